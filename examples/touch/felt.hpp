@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  What the servo thread does in a tick and what it hands over: the solver, and the sums over its regions.
+
+#include <palpate/beam/regions.hpp>
+#include <palpate/palpate.hpp>
+
+#include "tools.hpp"
+
+namespace touch {
+
+inline constexpr std::size_t most_regions = 4;
+
+/// What the example keeps of a tick: plain values, so that another thread may have them.
+struct Felt {
+  palpate::Wrench<S> wrench;
+  palpate::Status status = palpate::Status::ok;
+  std::uint32_t regions = 0;
+  bool sliding = false;
+  V normal = V::Zero();    ///< normal part of the force [N]
+  V friction = V::Zero();  ///< friction part [N]
+  palpate::FixedVector<palpate::ContactState<S>, most_regions> contacts;  ///< what the shape is made of
+};
+
+/// The solver as the device calls it.
+template <class Solver>
+struct Feel {
+  Solver solver;
+
+  Felt tick(const palpate::Pose<S>& X, S dt) noexcept {
+    const palpate::TickResult<S> result = solver.tick(X, dt);
+    Felt felt;
+    felt.wrench = result.wrench;
+    felt.status = result.status;
+    for (const palpate::ContactState<S>& contact : solver.contacts()) {
+      ++felt.regions;
+      felt.sliding = felt.sliding || contact.mode == palpate::ContactMode::sliding;
+      felt.friction += contact.friction;
+      felt.normal += contact.force - contact.friction;
+      felt.contacts.push_back(contact);
+    }
+    return felt;
+  }
+  void reset() noexcept { solver.reset(); }
+};
+
+/// The example's solver over any body.
+template <class Body, class Coupling = palpate::IndependentRegions>
+using Contact = palpate::ContactSolver<Body, palpate::DuffingForce<S>, palpate::PowerLawFriction<S>,
+                                       palpate::Regions<most_regions>, palpate::AtContact, Coupling>;
+
+/// The paper's parameters (section VII): lengths in mm, m = 1 kg, and K = 10 read in dyn.
+inline const palpate::DuffingForce<S> paper_force({.c1 = 40, .c3 = 3e8});
+
+template <class Body, class Coupling = palpate::IndependentRegions>
+[[nodiscard]] Contact<Body, Coupling> make_contact(const Body& body, const Tool& tool,
+                                                   const palpate::DuffingForce<S>& force, const Coupling& coupling = {}) {
+  using namespace palpate;
+  return Contact<Body, Coupling>({
+      .object = body,
+      .tool = ToolPoints<S>(TriangleMesh<S>(tool.mesh),
+                            {.contact_area = tool.contact_area, .centre_of_mass = tool.centre_of_mass}, tool.spacing),
+      .force = force,
+      .friction = PowerLawFriction<S>(
+          {.K = PowerLawFriction<S>::si_coefficient(10, 0.75, 1e-5), .beta = 0.75, .mu_dynamic = 0.3}),
+      .contacts = {.distance = 2.5 * tool.spacing},
+      .coupling = coupling,
+  });
+}
+
+}  // namespace touch

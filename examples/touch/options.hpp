@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Command line of the main example.
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+namespace touch {
+
+struct Options {
+  std::string object = "ellipsoid";
+  std::string tool = "mallet";
+  std::string script = "figure10";
+  std::string out = "out";
+  std::string scene;    ///< empty: none
+  double scale = 1;     ///< of tool files
+  double rate = 1000;   ///< [Hz]
+  bool stepped = false;
+  bool real_time = false;  ///< of a scene
+  bool help = false;
+};
+
+inline constexpr const char* usage =
+    R"(palpate_touch: a tool, held by a haptic device, presses and slides on an elastic object.
+
+  --object NAME   ellipsoid (default), sphere, box, cylinder, superellipsoid
+  --tool NAME     mallet (default), head, tail, sphere, pin, block, compass, or FILE.obj
+  --scale S       metres per unit of FILE.obj (default 1)
+  --script NAME   figure10 (default), press, slide
+  --rate HZ       servo rate asked of the device (default 1000)
+  --stepped       simulated time instead of real time: same bits in every run (stand-in device only)
+  --out FOLDER    where the results go (default out)
+
+  --scene NAME    a preset of all that, with the object's shape: meshes for ParaView, pictures and an animation in
+                  out/NAME. ellipsoid (Fig. 10), cube-head and cube-tail (Fig. 11), heart (Fig. 12). Stepped.
+  --real-time     the scene at the device's own pace
+)";
+
+[[noreturn]] inline void refuse(const std::string& why) {
+  std::fprintf(stderr, "palpate_touch: %s\n%s", why.c_str(), usage);
+  std::exit(2);
+}
+
+inline Options parse(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string name = argv[i];
+    const auto value = [&]() -> std::string {
+      if (i + 1 >= argc) refuse(name + " needs a value");
+      return argv[++i];
+    };
+    const auto number = [&] {
+      const std::string text = value();
+      char* end = nullptr;
+      const double x = std::strtod(text.c_str(), &end);
+      if (end == text.c_str() || *end != '\0' || !(x > 0)) refuse(name + " needs a number > 0, got " + text);
+      return x;
+    };
+    if (name == "--object") options.object = value();
+    else if (name == "--tool") options.tool = value();
+    else if (name == "--script") options.script = value();
+    else if (name == "--out") options.out = value();
+    else if (name == "--scale") options.scale = number();
+    else if (name == "--rate") options.rate = number();
+    else if (name == "--scene") options.scene = value();
+    else if (name == "--stepped") options.stepped = true;
+    else if (name == "--real-time") options.real_time = true;
+    else if (name == "--help" || name == "-h") options.help = true;
+    else refuse("unknown option " + name);
+  }
+  return options;
+}
+
+}  // namespace touch

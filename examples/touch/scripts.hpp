@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  What the scripted hand does: targets for the tool's origin over time, in object coordinates.
+
+#include <palpate/palpate.hpp>
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "options.hpp"
+#include "tools.hpp"
+
+namespace touch {
+
+struct Script {
+  double seconds;
+  std::function<palpate::Vec3<double>(double t)> target;  ///< [m]
+  std::function<palpate::Mat3<double>(double t)> turn{};  ///< empty: upright
+};
+
+/// 0 before `begin`, 1 after `end` [s], smooth between.
+inline double smooth_step(double t, double begin, double end) {
+  const double s = t <= begin ? 0 : t >= end ? 1 : (t - begin) / (end - begin);
+  return s * s * (3 - 2 * s);
+}
+
+/// The path, worked out before the servo loop runs: places every 10 ms, straight lines between.
+template <class Path>
+Script table(double seconds, const Path& path) {
+  constexpr double step = 0.01;
+  std::vector<palpate::Vec3<double>> places;
+  for (int i = 0; i <= static_cast<int>(seconds / step) + 1; ++i) places.push_back(path(i * step));
+  return {seconds,
+          [places = std::move(places)](double t) -> palpate::Vec3<double> {
+            const double s = std::clamp(t / step, 0.0, static_cast<double>(places.size() - 2));
+            const auto i = static_cast<std::size_t>(s);
+            const double part = (std::min)(s - static_cast<double>(i), 1.0);
+            return (1 - part) * places[i] + part * places[i + 1];
+          },
+          {}};
+}
+
+/// Scripts lead the tool over the body's upper side, upright. `press` [m] is how far below the surface the hand aims: the
+/// grip's spring turns it into a force.
+template <class Body>
+Script make_script(const Options& options, const Body& body, const palpate::MeshData<double>& tool) {
+  constexpr double hover = 6e-3, press = 8e-3, free = 1.2;  // s until the gate has armed and ramped
+  const auto below = [&body](double x, double z) { return body.raycast(V(x, 1, z), -V::UnitY()); };
+  // Where the tool, standing over (x, z), would be `height` off its first touch, along the surface's normal.
+  const auto over = [=, &tool](double x, double z, double height) -> V {
+    const palpate::RayHit<double> hit = below(x, z);
+    if (!hit.hit) return V(x, height, z);
+    double y = hit.position.y();
+    for (const V& v : tool.vertices) {
+      const palpate::RayHit<double> under = below(x + v.x(), z + v.z());
+      if (under.hit) y = (std::max)(y, under.position.y() - v.y());
+    }
+    return V(x, y, z) + height * body.closest(V(hit.position + 1e-6 * V::UnitY())).normal;
+  };
+  const double reach = 0.6 * body.upper().x();
+  if (options.script == "figure10") {  // down, along +x and slightly +z, up
+    return table(6.0, [=](double t) {
+              const double down = smooth_step(t, free, free + 0.6) - smooth_step(t, 5.2, 5.8);
+              const double along = smooth_step(t, free + 0.6, 5.2);
+              return over(reach * (2 * along - 1), 0.1 * reach * along, hover - (hover + press) * down);
+            });
+  }
+  if (options.script == "press") {  // in and out at one place, three times, each deeper
+    return table(5.0, [=](double t) {
+              const double s = t < free ? 0 : t - free;
+              const double wave = 0.5 * (1 - std::cos(6.283185307179586 * s / 1.2));
+              return over(0, 0, hover - (hover + press * (0.4 + 0.2 * std::floor(s / 1.2))) * wave);
+            });
+  }
+  if (options.script == "slide") {  // to and fro across the top
+    return table(8.0, [=](double t) {
+              const double down = smooth_step(t, free, free + 0.6) - smooth_step(t, 7.2, 7.8);
+              const double s = t < free + 0.6 ? 0 : t - free - 0.6;
+              return over(reach * std::sin(6.283185307179586 * s / 2.5), 0.2 * reach * std::sin(6.283185307179586 * s / 4.1),
+                          hover - (hover + press) * down);
+            });
+  }
+  refuse("unknown script " + options.script);
+}
+
+}  // namespace touch

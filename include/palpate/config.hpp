@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Hooks for the host. An engine may put a header named `palpate_config.hpp` on its include path, or
+/// define these macros on the command line, to replace the defaults below. The setting must be the same in
+/// every translation unit of a program.
+///
+/// | macro                            | default                        | is called                               |
+/// |----------------------------------|--------------------------------|-----------------------------------------|
+/// | PALPATE_ASSERT(condition)        | assert()                       | on broken preconditions, debug builds   |
+/// | PALPATE_ON_SETUP_ERROR(message)  | write to stderr, then abort()  | without exceptions: bad input at set-up; must not return |
+
+#if __has_include(<palpate_config.hpp>)
+#include <palpate_config.hpp>
+#endif
+
+#ifndef PALPATE_ASSERT
+#include <cassert>
+#define PALPATE_ASSERT(condition) assert(condition)
+#endif
+
+// An empty member costs no byte. MSVC ignores the standard spelling.
+#if defined(_MSC_VER)
+#define PALPATE_NO_UNIQUE_ADDRESS [[msvc::no_unique_address]]
+#else
+#define PALPATE_NO_UNIQUE_ADDRESS [[no_unique_address]]
+#endif
+
+// A pointer through which alone its data are reached in this scope, so that loops over arrays vectorise.
+#define PALPATE_RESTRICT __restrict
+
+#if defined(__cpp_exceptions) || defined(_CPPUNWIND)
+#define PALPATE_HAS_EXCEPTIONS 1
+#else
+#define PALPATE_HAS_EXCEPTIONS 0
+#endif

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Rigid pose of the tool in the elastic object's frame, and the wrench on it.
+
+#include <palpate/core/vector.hpp>
+
+namespace palpate {
+
+/// X_OT: maps tool coordinates to object coordinates, x_O = rotation x_T + translation [m].
+template <Real S>
+struct Pose {
+  Mat3<S> rotation = Mat3<S>::Identity();   ///< orthonormal, right-handed
+  Vec3<S> translation = Vec3<S>::Zero();    ///< place of the tool's origin [m]
+
+  [[nodiscard]] Vec3<S> operator*(const Vec3<S>& p_T) const noexcept { return rotation * p_T + translation; }
+  /// The inverse map, object to tool coordinates.
+  [[nodiscard]] Vec3<S> to_tool(const Vec3<S>& p_O) const noexcept {
+    return rotation.transpose() * (p_O - translation);
+  }
+};
+
+/// True when every entry is finite, the translation is below `limit` [m] and the rotation is orthonormal and
+/// right-handed to within `tolerance`. A device driver can hand over anything; the servo tick asks this first.
+template <Real S>
+[[nodiscard]] inline bool is_usable(const Pose<S>& X, S limit = S(1e6), S tolerance = S(1e-3)) noexcept {
+  const auto within = [](const Vec3<S>& v, S most) {
+    return is_within(v.x(), most) && is_within(v.y(), most) && is_within(v.z(), most);
+  };
+  const Vec3<S> x = X.rotation.col(0), y = X.rotation.col(1), z = X.rotation.col(2);
+  // Entries below 2 first, so that nothing overflows after that.
+  if (!within(X.translation, limit) || !within(x, S(2)) || !within(y, S(2)) || !within(z, S(2))) return false;
+  return within(Vec3<S>(x.squaredNorm() - S(1), y.squaredNorm() - S(1), z.squaredNorm() - S(1)), tolerance) &&
+         within(x.cross(y) - z, tolerance);
+}
+
+/// What the tool feels: force [N] and torque about its centre of mass [N m], in object coordinates.
+template <Real S>
+struct Wrench {
+  Vec3<S> force = Vec3<S>::Zero();
+  Vec3<S> torque = Vec3<S>::Zero();
+};
+
+}  // namespace palpate

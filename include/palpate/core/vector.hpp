@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Vectors and matrices of space. Only 3-vectors and 3 x 3 matrices cross the interface: their size and
+/// alignment do not depend on the host's vectorisation flags.
+
+#include <palpate/core/scalar.hpp>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>  // cross(), which Eigen/Core declares and does not define
+
+#include <cmath>
+#include <limits>
+
+namespace palpate {
+
+template <Real S>
+using Vec3 = Eigen::Matrix<S, 3, 1>;
+template <Real S>
+using Mat3 = Eigen::Matrix<S, 3, 3>;
+
+template <Real S>
+[[nodiscard]] inline bool is_finite(const Vec3<S>& v) noexcept {
+  return is_finite(v.x()) && is_finite(v.y()) && is_finite(v.z());
+}
+
+/// v without its component along the unit vector n.
+template <Real S>
+[[nodiscard]] inline Vec3<S> tangential(const Vec3<S>& v, const Vec3<S>& n) noexcept {
+  return v - n * n.dot(v);
+}
+
+/// A unit vector perpendicular to the unit vector n; continuous in n except across the plane n.z = 0.
+/// Source: [duff2017].
+template <Real S>
+[[nodiscard]] inline Vec3<S> perpendicular(const Vec3<S>& n) noexcept {
+  const S sign = n.z() < S(0) ? S(-1) : S(1);
+  const S a = S(-1) / (sign + n.z());
+  return Vec3<S>(S(1) + sign * n.x() * n.x() * a, sign * n.x() * n.y() * a, -sign * n.x());
+}
+
+/// v / |v|, or `otherwise` where |v| is too small to have a direction.
+template <Real S>
+[[nodiscard]] inline Vec3<S> unit_or(const Vec3<S>& v, const Vec3<S>& otherwise) noexcept {
+  const S square = v.squaredNorm();
+  // Neither overflowed nor underflowed: the usual case.
+  if (square > (std::numeric_limits<S>::min)() / std::numeric_limits<S>::epsilon() && is_finite(square))
+    return v / std::sqrt(square);
+  const S length = v.stableNorm();
+  if (length > (std::numeric_limits<S>::min)()) return v / length;
+  return otherwise;
+}
+
+}  // namespace palpate

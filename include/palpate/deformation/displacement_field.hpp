@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Output stage: displacements of corners and contacts to vertices and normals in the caller's buffer.
+
+#include <palpate/core/error.hpp>
+#include <palpate/deformation/concept.hpp>
+#include <palpate/deformation/vertex_normals.hpp>
+#include <palpate/interpolation/concept.hpp>
+#include <palpate/interpolation/neighbourhood.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace palpate {
+
+/// Sums the fields of all contacts over the display vertices (V.A.2, V.B, VI) and writes what changed.
+///
+/// | symbol | name               | unit | range                                                             |
+/// |--------|--------------------|------|-------------------------------------------------------------------|
+/// |        | `Params::contacts` | -    | >= 1: contacts drawn at once; more are left out and reported      |
+/// |        | `Params::normals`  | -    | false: none are ever written, and the mesh need not be closed     |
+///
+/// Several contacts (VI): their fields are added, so a contact that appears with D = 0 and u_i = 0 changes nothing.
+/// What changed is found face by face: a face is written again when one of its corners, or a contact that splits it,
+/// is not bit for bit what it was. Normals are written for its vertices and for their neighbours in other faces.
+/// With the same input as in the last tick nothing is read or written at all.
+///
+/// Set-up sizes everything; write() uses no heap and has no state but the last tick's input. One buffer per object:
+/// after a switch to another buffer call write_rest() on it first.
+template <Interpolation I, Neighbourhood N = AreaNeighbourhood<typename I::Scalar>>
+class DisplacementField {
+ public:
+  using Scalar = typename I::Scalar;
+  using S = Scalar;
+
+  struct Params {
+    std::size_t contacts{4};
+    bool normals{true};
+  };
+
+  /// `mesh` is the one that the interpolation's partition was made from.
+  DisplacementField(I interpolation, N neighbourhood, const MeshData<S>& mesh, const Params& params = {})
+      : p_(params), interpolation_(std::move(interpolation)), neighbourhood_(std::move(neighbourhood)) {
+    const FacePartition<S>& partition = interpolation_.partition();
+    if (p_.contacts < 1) fail(name, "contacts must be >= 1", static_cast<double>(p_.contacts));
+    if (mesh.vertices.size() != partition.size())
+      fail(name, "mesh must be the partition's", static_cast<double>(mesh.vertices.size()));
+    loads_.resize(p_.contacts);
+    previous_.resize(p_.contacts);
+    dents_.resize(p_.contacts);
+    previous_dents_.resize(p_.contacts);
+    contacts_.reserve(p_.contacts);
+    corners_.reserve(p_.contacts * partition.points().size());
+    dirty_.assign(partition.faces().size(), 1);
+    position_.resize(partition.size());
+    if (p_.normals) set_up_normals(mesh);
+    forget();
+  }
+
+  /// Fills the whole buffer with the undeformed shape. The next write() starts from it.
+  template <Real T>
+  void write_rest(const VertexBuffer<T>& out) noexcept {
+    forget();
+    const auto order = partition().order();
+    for (std::size_t slot = 0; slot < partition().size(); ++slot) {
+      const CyclicPoint<S>& x = position_[slot];
+      detail::store3(out.positions, out.position_stride, order[slot], x[0], x[1], x[2]);
+      if (p_.normals && out.normals != nullptr) store_normal(slot, out);
+    }
+  }
+
+  /// Writes the shape under `contacts`. `corners` holds the displacements u_i [m] that each contact causes at the
+  /// partition's extremal points, contact by contact. A list of the wrong length: nothing is written.
+  template <Real T>
+  Moved<S> write(std::span<const ContactDisplacement<S>> contacts, std::span<const Vec3<S>> corners,
+                 const VertexBuffer<T>& out) noexcept {
+    Moved<S> moved;
+    const std::size_t points = partition().points().size();
+    if (corners.size() != contacts.size() * points || out.positions == nullptr) return moved;
+    const std::size_t count = (std::min)(contacts.size(), p_.contacts);
+    if (count < contacts.size()) moved.status |= Status::region_overflow;
+    if (!take(contacts.first(count), corners.first(count * points))) return moved;
+
+    Extent extent;
+    for (std::size_t f = 0; f < dirty_.size(); ++f) {
+      dirty_[f] = changed(f) ? 1 : 0;
+      if (!dirty_[f]) continue;
+      const Face<S>& face = partition().faces()[f];
+      for (std::size_t first = face.first; first < face.first + face.count; first += block_size)
+        write_block(f, first, (std::min)(block_size, face.first + face.count - first), extent, out);
+      moved.vertices += face.count;
+    }
+    if (moved.vertices > 0) {
+      for (int axis = 0; axis < 3; ++axis) {
+        moved.lower[axis] =
+            *std::min_element(extent.lower[axis].value, extent.lower[axis].value + block_size);
+        moved.upper[axis] =
+            *std::max_element(extent.upper[axis].value, extent.upper[axis].value + block_size);
+      }
+      if (p_.normals && out.normals != nullptr) write_normals(out);
+    }
+    loads_.swap(previous_);
+    dents_.swap(previous_dents_);
+    previous_count_ = count;
+    return moved;
+  }
+
+  [[nodiscard]] const FacePartition<S>& partition() const noexcept { return interpolation_.partition(); }
+  [[nodiscard]] const I& interpolation() const noexcept { return interpolation_; }
+  [[nodiscard]] const Params& params() const noexcept { return p_; }
+
+ private:
+  using Load = typename I::Load;
+
+  struct Extent {  // extremes of each place in a block
+    Block<S> lower[3], upper[3];
+    Extent() noexcept {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (std::size_t i = 0; i < block_size; ++i) {
+          lower[axis][i] = (std::numeric_limits<S>::max)();
+          upper[axis][i] = std::numeric_limits<S>::lowest();
+        }
+      }
+    }
+  };
+
+  struct Dent {  // V.B: where and how much the contact's displacement is reduced
+    Vec3<S> place = Vec3<S>::Zero();
+    S less = 0;    // 1 - w; 0: not at all
+    S radius = 0;  // R
+    [[nodiscard]] bool touches(const Face<S>& face) const noexcept {
+      const S reach = radius + face.radius;
+      return less > S(0) && (place - face.centre).squaredNorm() < reach * reach;
+    }
+    // 1 - (1 - w) b(r) at the vertices of a block.
+    void scale(const S* PALPATE_RESTRICT x, const S* PALPATE_RESTRICT y, const S* PALPATE_RESTRICT z,
+               S* PALPATE_RESTRICT out) const noexcept {
+      const S px = place.x(), py = place.y(), pz = place.z(), per_square = S(1) / (radius * radius),
+              most = less;
+      for (std::size_t i = 0; i < block_size; ++i) {
+        const S dx = x[i] - px, dy = y[i] - py, dz = z[i] - pz;
+        const S left = S(1) - (dx * dx + dy * dy + dz * dz) * per_square, inside = left > S(0) ? left : S(0);
+        out[i] = S(1) - most * inside * inside;
+      }
+    }
+    [[nodiscard]] bool operator==(const Dent&) const noexcept = default;
+  };
+
+  void set_up_normals(const MeshData<S>& mesh) {
+    const auto order = partition().order();
+    std::vector<std::uint32_t> slot_of(order.size()), face_of(order.size());
+    for (std::uint32_t slot = 0; slot < order.size(); ++slot) slot_of[order[slot]] = slot;
+    std::vector<std::array<std::uint32_t, 3>> triangles = mesh.triangles;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      for (std::uint32_t& v : triangles[t]) {
+        if (v >= order.size()) fail_at(name, "vertex does not exist", "triangle", t, static_cast<double>(v));
+        v = slot_of[v];
+      }
+    }
+    normals_ = VertexNormals<S>(triangles, order.size());
+    for (std::uint32_t f = 0; f < dirty_.size(); ++f) {
+      const Face<S>& face = partition().faces()[f];
+      for (std::size_t slot = face.first; slot < face.first + face.count; ++slot) face_of[slot] = f;
+    }
+    for (const Face<S>& face : partition().faces()) {
+      rim_start_.push_back(rim_.size());
+      for (std::size_t slot = face.first; slot < face.first + face.count; ++slot) {
+        for (const std::uint32_t other : normals_.ring(slot)) {
+          if (other < face.first || other >= face.first + face.count) rim_.push_back({other, face_of[other]});
+        }
+      }
+      const auto begin = rim_.begin() + static_cast<std::ptrdiff_t>(rim_start_.back());
+      std::sort(begin, rim_.end());
+      rim_.erase(std::unique(begin, rim_.end()), rim_.end());
+    }
+    rim_start_.push_back(rim_.size());
+  }
+
+  void forget() noexcept {
+    for (std::size_t c = 0; c < p_.contacts; ++c) {
+      previous_[c] = Load{};
+      previous_dents_[c] = Dent{};
+    }
+    previous_count_ = 0;
+    contacts_.clear();
+    corners_.clear();
+    for (std::size_t slot = 0; slot < position_.size(); ++slot)
+      position_[slot] = {partition().rest(0)[slot], partition().rest(1)[slot], partition().rest(2)[slot],
+                         partition().rest(0)[slot], partition().rest(1)[slot]};
+  }
+
+  // Keeps the input; false when it is the same as in the last tick.
+  bool take(std::span<const ContactDisplacement<S>> contacts, std::span<const Vec3<S>> corners) noexcept {
+    if (std::equal(contacts.begin(), contacts.end(), contacts_.begin(), contacts_.end()) &&
+        std::equal(corners.begin(), corners.end(), corners_.begin(), corners_.end()))
+      return false;
+    contacts_.assign(contacts.begin(), contacts.end());  // within the capacity reserved at set-up
+    corners_.assign(corners.begin(), corners.end());
+    const std::size_t points = partition().points().size();
+    for (std::size_t c = 0; c < p_.contacts; ++c) {
+      dents_[c] = Dent{};
+      loads_[c].active = false;
+      if (c >= contacts.size()) continue;
+      interpolation_.prepare(corners.subspan(c * points, points), contacts[c], loads_[c]);
+      if constexpr (N::active) {
+        const S w = neighbourhood_.factor(contacts[c]), radius = neighbourhood_.radius(contacts[c]);
+        if (w < S(1) && radius > S(0) && is_drawable(contacts[c]))
+          dents_[c] = {contacts[c].place, S(1) - w, radius};
+      }
+    }
+    active_ = contacts.size();
+    return true;
+  }
+
+  [[nodiscard]] bool changed(std::size_t f) const noexcept {
+    const Face<S>& face = partition().faces()[f];
+    for (std::size_t c = 0; c < (std::max)(active_, previous_count_); ++c) {
+      if (!interpolation_.same(previous_[c], loads_[c], f)) return true;
+      if (dents_[c] != previous_dents_[c] && (dents_[c].touches(face) || previous_dents_[c].touches(face)))
+        return true;
+    }
+    return false;
+  }
+
+  template <Real T>
+  void write_block(std::size_t f, std::size_t first, std::size_t count, Extent& extent,
+                   const VertexBuffer<T>& out) noexcept {
+    const FacePartition<S>& part = partition();
+    Block<S> u[3], scale;
+    for (Block<S>& component : u) {
+      for (std::size_t i = 0; i < block_size; ++i) component[i] = S(0);
+    }
+    for (std::size_t c = 0; c < active_; ++c) {
+      if (!interpolation_.moves(loads_[c], f)) continue;
+      const bool dented = dents_[c].touches(part.faces()[f]);
+      if (dented)
+        dents_[c].scale(part.rest(0) + first, part.rest(1) + first, part.rest(2) + first, scale.value);
+      interpolation_.add(loads_[c], f, first, dented ? scale.value : nullptr, u[0].value, u[1].value,
+                         u[2].value);
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      const S* PALPATE_RESTRICT const rest = part.rest(axis) + first;
+      S* PALPATE_RESTRICT const x = u[axis].value;
+      for (std::size_t i = 0; i < block_size; ++i) x[i] += rest[i];
+      for (std::size_t i = count; i < block_size; ++i)
+        x[i] = x[0];  // not vertices of this block: no part in the box
+      S* PALPATE_RESTRICT const lower = extent.lower[axis].value;
+      S* PALPATE_RESTRICT const upper = extent.upper[axis].value;
+      for (std::size_t i = 0; i < block_size; ++i) {
+        lower[i] = x[i] < lower[i] ? x[i] : lower[i];
+        upper[i] = x[i] > upper[i] ? x[i] : upper[i];
+      }
+    }
+    const std::uint32_t* const vertex = part.order().data() + first;
+    for (std::size_t i = 0; i < count; ++i)
+      detail::store3(out.positions, out.position_stride, vertex[i], u[0][i], u[1][i], u[2][i]);
+    if (!p_.normals) return;
+    for (std::size_t i = 0; i < count; ++i)
+      position_[first + i] = {u[0][i], u[1][i], u[2][i], u[0][i], u[1][i]};
+  }
+
+  template <Real T>
+  void write_normals(const VertexBuffer<T>& out) const noexcept {
+    for (std::size_t f = 0; f < dirty_.size(); ++f) {
+      if (!dirty_[f]) continue;
+      const Face<S>& face = partition().faces()[f];
+      for (std::size_t slot = face.first; slot < face.first + face.count; ++slot) store_normal(slot, out);
+      for (std::size_t k = rim_start_[f]; k < rim_start_[f + 1]; ++k) {
+        if (!dirty_[rim_[k].face]) store_normal(rim_[k].slot, out);
+      }
+    }
+  }
+
+  template <Real T>
+  void store_normal(std::size_t slot, const VertexBuffer<T>& out) const noexcept {
+    const Vec3<S> a = normals_.area(slot, position_.data());
+    const S square = a.squaredNorm();
+    const std::size_t vertex = partition().order()[slot];
+    if (square > (std::numeric_limits<S>::min)()) {
+      const S scale = S(1) / std::sqrt(square);
+      detail::store3(out.normals, out.normal_stride, vertex, a[0] * scale, a[1] * scale, a[2] * scale);
+    } else {  // collapsed: keep the undeformed normal
+      detail::store3(out.normals, out.normal_stride, vertex, partition().normal(0)[slot],
+                     partition().normal(1)[slot], partition().normal(2)[slot]);
+    }
+  }
+
+  static constexpr const char* name = "DisplacementField";
+
+  struct RimVertex {  // a vertex of another face next to this one
+    std::uint32_t slot, face;
+    [[nodiscard]] auto operator<=>(const RimVertex&) const noexcept = default;
+  };
+
+  Params p_;
+  I interpolation_;
+  PALPATE_NO_UNIQUE_ADDRESS N neighbourhood_;
+  VertexNormals<S> normals_;
+  std::vector<RimVertex> rim_;
+  std::vector<std::size_t> rim_start_;
+  std::vector<Load> loads_, previous_;
+  std::vector<Dent> dents_, previous_dents_;
+  std::vector<ContactDisplacement<S>> contacts_;
+  std::vector<Vec3<S>> corners_;
+  std::vector<std::uint8_t> dirty_;
+  std::vector<CyclicPoint<S>> position_;
+  std::size_t active_ = 0, previous_count_ = 0;
+};
+
+}  // namespace palpate

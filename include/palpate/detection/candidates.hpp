@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Which points of the tool may touch: a walk through its tree of balls against the surface.
+
+#include <palpate/detection/tool_points.hpp>
+#include <palpate/surface/concept.hpp>
+
+#include <cmath>
+
+namespace palpate {
+
+namespace detail {
+/// Upper bound of |R v| / |v|: 1 to rounding for a rotation, and safe for what is_usable() lets pass.
+template <Real S>
+[[nodiscard]] inline S largest_stretch(const Mat3<S>& R) noexcept {
+  const Mat3<S> G = R.transpose() * R;
+  return std::sqrt(G.cwiseAbs().rowwise().sum().maxCoeff());  // Gershgorin's bound on the largest eigenvalue
+}
+
+/// X times each of eight points.
+template <Real S>
+[[nodiscard]] inline PointLanes<S> place(const Pose<S>& X, const PointLanes<S>& p) noexcept {
+  const auto& R = X.rotation;
+  const auto& t = X.translation;
+  const S xx = R(0, 0), xy = R(0, 1), xz = R(0, 2), yx = R(1, 0), yy = R(1, 1), yz = R(1, 2);
+  const S zx = R(2, 0), zy = R(2, 1), zz = R(2, 2), tx = t.x(), ty = t.y(), tz = t.z();
+  PointLanes<S> x;
+  for (std::size_t i = 0; i < p.x.size(); ++i) {
+    x.x[i] = xx * p.x[i] + xy * p.y[i] + xz * p.z[i] + tx;
+    x.y[i] = yx * p.x[i] + yy * p.y[i] + yz * p.z[i] + ty;
+    x.z[i] = zx * p.x[i] + zy * p.y[i] + zz * p.z[i] + tz;
+  }
+  return x;
+}
+}  // namespace detail
+
+/// Calls visit(begin, count, x) for every leaf of the tool's tree with a point that may be inside the
+/// surface: `count` <= 8 points from `begin` on, with x their places in object coordinates [m]. No equation.
+///
+/// Precondition: X is usable (core/pose.hpp). A ball that surface.separated() says is apart is left out with
+/// all its points; so a tool far away costs one such test, and the rest costs in proportion to what touches:
+/// every point that touches is visited, with the others of its leaf. The loop ends after at most one
+/// test for each node.
+template <Real S, ContactSurface B, class Visit>
+requires std::same_as<S, typename B::Scalar>
+inline void for_each_candidate_leaf(const ToolPoints<S>& tool, const Pose<S>& X, const B& surface,
+                                    const Visit& visit) noexcept {
+  const auto nodes = tool.nodes();
+  const S stretch = detail::largest_stretch(X.rotation);
+  // More than the rounding of X * p, which may differ between a ball's centre and its points.
+  const S reach =
+      nodes[0].centre.cwiseAbs().maxCoeff() + nodes[0].radius + X.translation.cwiseAbs().maxCoeff();
+  const S guard = S(16) * std::numeric_limits<S>::epsilon() * reach;
+  for (std::uint32_t n = 0; n < nodes.size();) {
+    const auto& node = nodes[n];
+    if (surface.separated(X * node.centre, stretch * node.radius + guard)) {
+      n = node.skip;
+      continue;
+    }
+    if (node.skip == n + 1)
+      visit(node.begin, node.end - node.begin, detail::place(X, tool.lanes(node.begin)));
+    ++n;
+  }
+}
+
+/// The same with visit(point, x) for each point, in their order.
+template <Real S, ContactSurface B, class Visit>
+requires std::same_as<S, typename B::Scalar>
+inline void for_each_candidate(const ToolPoints<S>& tool, const Pose<S>& X, const B& surface,
+                               const Visit& visit) noexcept {
+  for_each_candidate_leaf(tool, X, surface,
+                          [&](std::uint32_t begin, std::uint32_t count, const PointLanes<S>& x) noexcept {
+                            for (std::uint32_t i = 0; i < count; ++i)
+                              visit(begin + i, Vec3<S>(x.x[i], x.y[i], x.z[i]));
+                          });
+}
+
+}  // namespace palpate

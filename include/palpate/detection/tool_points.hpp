@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  The tool as the force sees it: points with areas, in a tree of bounding spheres; or one point.
+
+#include <palpate/core/pose.hpp>
+#include <palpate/detection/resample.hpp>
+#include <palpate/surface/triangle_mesh.hpp>
+
+namespace palpate {
+
+/// Tool that touches with its tip only. Tool coordinates.
+template <Real S>
+struct PointTool {
+  Vec3<S> tip = Vec3<S>::Zero();             ///< [m]
+  Vec3<S> centre_of_mass = Vec3<S>::Zero();  ///< [m]
+};
+
+/// Points of a rigid tool, each with the area that it stands for, IV.C of [luo2005].
+///
+/// | symbol | name                | unit | range                                             |
+/// |--------|---------------------|------|---------------------------------------------------|
+/// | x_i    | `point(i)`          | m    | finite, below 1e6; 1 to 10 million points         |
+/// | A_i    | `area(i)`           | m^2  | > 0                                               |
+/// | A_0    | `contact_area`      | m^2  | > 0; the law's stiffness is that of this area     |
+/// |        | `centre_of_mass`    | m    | finite; torques are about it                      |
+///
+/// A_0 belongs to the tool (a mallet's face, a pin's tip), not to the tick: a point carries A_i / A_0 of the
+/// force law.
+///
+/// Points are stored by place: `original(i)` is the number that point i had when it was given. The tree's
+/// nodes are in pre-order, a node's points are contiguous, leaves hold at most 8; a walk needs no stack
+/// (candidates.hpp). Constructors report what is out of range; `spacing` as resample().
+template <Real S>
+class ToolPoints {
+ public:
+  using Scalar = S;
+
+  struct Params {
+    S contact_area{};                          ///< A_0 [m^2]
+    Vec3<S> centre_of_mass = Vec3<S>::Zero();  ///< tool coordinates [m]
+  };
+
+  /// Ball that holds points [begin, end). After a node comes its first child; `skip` is the next node outside
+  /// it.
+  struct Node {
+    Vec3<S> centre;
+    S radius;
+    std::uint32_t begin, end, skip;
+  };
+
+  /// Points and areas as given, n x 3 and n.
+  ToolPoints(const std::vector<Vec3<S>>& points, const std::vector<S>& areas, const Params& params)
+      : contact_area_(params.contact_area), centre_of_mass_(params.centre_of_mass) {
+    constexpr const char* where = "ToolPoints";
+    require_positive(contact_area_, where, "contact_area [m^2] must be > 0");
+    for (int i = 0; i < 3; ++i)
+      require_finite(centre_of_mass_[i], where, "centre_of_mass [m] must be finite");
+    if (points.empty()) fail(where, "needs at least one point");
+    if (points.size() > max_tool_points)
+      fail(where, "takes at most 10 million points", static_cast<double>(points.size()));
+    if (areas.size() != points.size())
+      fail(where, "needs one area for each point, points minus areas must be 0",
+           static_cast<double>(points.size()) - static_cast<double>(areas.size()));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      for (int k = 0; k < 3; ++k) {
+        if (!is_finite(points[i][k]) || !(std::abs(points[i][k]) <= S(1e6L)))
+          fail_at(where, "coordinates [m] must be finite and below 1e6", "point", i,
+                  static_cast<double>(points[i][k]));
+      }
+      if (!is_finite(areas[i]) || !(areas[i] > S(0)))
+        fail_at(where, "area [m^2] must be > 0", "point", i, static_cast<double>(areas[i]));
+    }
+    original_.resize(points.size());
+    std::iota(original_.begin(), original_.end(), 0u);
+    build(points, 0, static_cast<std::uint32_t>(points.size()));
+    points_.reserve(points.size());
+    areas_.reserve(points.size());
+    for (const std::uint32_t i : original_) {
+      points_.push_back(points[i]);
+      areas_.push_back(areas[i]);
+    }
+    // Leaves are full but for the last, so leaf k begins at point 8 k.
+    lanes_.resize((points_.size() + leaf_size - 1) / leaf_size);
+    for (std::size_t i = 0; i < lanes_.size() * leaf_size; ++i) {
+      const Vec3<S>& p = points_[(std::min)(i, points_.size() - 1)];
+      PointLanes<S>& leaf = lanes_[i / leaf_size];
+      leaf.x[i % leaf_size] = p.x();
+      leaf.y[i % leaf_size] = p.y();
+      leaf.z[i % leaf_size] = p.z();
+    }
+  }
+
+  /// The mesh's vertices and vertex areas.
+  ToolPoints(const TriangleMesh<S>& mesh, const Params& params)
+      : ToolPoints(mesh.vertices(), mesh.vertex_areas(), params) {}
+
+  /// Even points on the mesh about `spacing` [m] apart.
+  ToolPoints(const TriangleMesh<S>& mesh, const Params& params, S spacing)
+      : ToolPoints(resample(mesh, spacing), params) {}
+
+  ToolPoints(const SurfaceSamples<S>& samples, const Params& params)
+      : ToolPoints(samples.points, samples.areas, params) {}
+
+  [[nodiscard]] std::size_t size() const noexcept { return points_.size(); }
+  [[nodiscard]] const Vec3<S>& point(std::size_t i) const noexcept { return points_[i]; }
+  [[nodiscard]] S area(std::size_t i) const noexcept { return areas_[i]; }
+  [[nodiscard]] std::uint32_t original(std::size_t i) const noexcept { return original_[i]; }
+  [[nodiscard]] std::span<const Vec3<S>> points() const noexcept { return points_; }
+  [[nodiscard]] std::span<const S> areas() const noexcept { return areas_; }
+  [[nodiscard]] S contact_area() const noexcept { return contact_area_; }
+  [[nodiscard]] Vec3<S> centre_of_mass() const noexcept { return centre_of_mass_; }
+  /// The eight points from `begin` on, where a leaf begins; the last leaf is filled up with its last point.
+  [[nodiscard]] const PointLanes<S>& lanes(std::size_t begin) const noexcept {
+    return lanes_[begin / leaf_size];
+  }
+  /// The tree; the first node's ball holds all points.
+  [[nodiscard]] std::span<const Node> nodes() const noexcept { return nodes_; }
+
+ private:
+  static constexpr std::uint32_t leaf_size = PointLanes<S>::size;
+
+  void build(const std::vector<Vec3<S>>& points, std::uint32_t begin, std::uint32_t end) {
+    const std::size_t index = nodes_.size();
+    Vec3<S> low = points[original_[begin]], high = low;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      low = low.cwiseMin(points[original_[i]]);
+      high = high.cwiseMax(points[original_[i]]);
+    }
+    const Vec3<S> centre = low + (high - low) / S(2);
+    S radius = S(0);
+    for (std::uint32_t i = begin; i < end; ++i)
+      radius = (std::max)(radius, (points[original_[i]] - centre).norm());
+    nodes_.push_back({centre, radius * (S(1) + S(8) * std::numeric_limits<S>::epsilon()), begin, end, 0});
+    if (end - begin > leaf_size) {
+      int axis = 0;
+      (high - low).maxCoeff(&axis);
+      // Whole leaves to the left, so that leaves are full.
+      const std::uint32_t middle = begin + ((end - begin + 2 * leaf_size - 1) / (2 * leaf_size)) * leaf_size;
+      std::nth_element(original_.begin() + begin, original_.begin() + middle, original_.begin() + end,
+                       [&](std::uint32_t l, std::uint32_t r) {
+                         return points[l][axis] < points[r][axis] ||
+                                (points[l][axis] == points[r][axis] && l < r);
+                       });
+      build(points, begin, middle);
+      build(points, middle, end);
+    }
+    nodes_[index].skip = static_cast<std::uint32_t>(nodes_.size());
+  }
+
+  std::vector<Vec3<S>> points_;
+  std::vector<PointLanes<S>> lanes_;  // the same points, leaf by leaf
+  std::vector<S> areas_;
+  std::vector<std::uint32_t> original_;
+  std::vector<Node> nodes_;
+  S contact_area_;
+  Vec3<S> centre_of_mass_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  What an interpolation must offer: displacements of corners to a field over the display vertices (V.A.2).
+/// Read this before writing one.
+///
+/// | shipped               | field between the corners                            | use it when                         |
+/// |-----------------------|------------------------------------------------------|-------------------------------------|
+/// | `PhongInterpolation`  | magnitude and angle to the normal vary linearly      | the paper's; keeps bulges round     |
+/// | `LinearInterpolation` | vectors vary linearly                                | fastest; affine fields stay exact   |
+/// | `SmoothInterpolation` | least third-order bending energy (triharmonic)       | no creases at the faces' edges      |
+///
+/// Corners are the extremal points and one contact point. The fields of several contacts are summed by the caller,
+/// so an interpolation sees one contact at a time; none of its corners is another contact's point, or a contact
+/// that appears at zero force would press a dimple of zero displacement into the others' fields.
+/// Absent on purpose: spherical averages of directions; they iterate, and have no answer for opposite directions.
+
+#include <palpate/core/vector.hpp>
+#include <palpate/interpolation/partition.hpp>
+
+#include <bit>
+#include <concepts>
+#include <cstdint>
+#include <span>
+
+namespace palpate {
+
+/// An equivalent contact as the shape sees it. Object coordinates.
+template <Real S>
+struct ContactDisplacement {
+  Vec3<S> place = Vec3<S>::Zero();         ///< p_0 on the undeformed surface [m]
+  Vec3<S> normal = Vec3<S>::UnitY();       ///< of the undeformed surface there: outward, unit
+  Vec3<S> displacement = Vec3<S>::Zero();  ///< D [m]
+  S area = 0;                              ///< of the region [m^2]; 0 for a single point
+  S points = 1;                            ///< tool points in the region
+
+  [[nodiscard]] bool operator==(const ContactDisplacement&) const noexcept = default;
+};
+
+/// A displacement that can be drawn: finite and below 1e6 m, so that nothing overflows even in a float buffer.
+template <Real S>
+[[nodiscard]] inline bool is_drawable(const Vec3<S>& u) noexcept {
+  return is_finite(u) && u.cwiseAbs().maxCoeff() <= S(1e6);
+}
+template <Real S>
+[[nodiscard]] inline bool is_drawable(const ContactDisplacement<S>& c) noexcept {
+  return is_drawable(c.place) && is_finite(c.normal) && is_drawable(c.displacement) && is_finite(c.area) &&
+         is_finite(c.points);
+}
+
+template <
+    class I>  // one contact and its corners' displacements, made ready once per tick; must not need the heap
+concept HasLoad = std::default_initializable<typename I::Load> && std::copyable<typename I::Load>;
+
+template <class I>  // the faces and slots that `add` speaks of
+concept HasPartition = requires(const I& field) {
+  { field.partition() }
+  noexcept->std::same_as<const FacePartition<typename I::Scalar>&>;
+};
+
+template <
+    class
+    I>  // corner displacements u_i [m], one per extremal point, and the contact; bad input: nothing moves
+concept HasPrepare = requires(const I& field, std::span<const Vec3<typename I::Scalar>> corners,
+                              const ContactDisplacement<typename I::Scalar>& contact,
+                              typename I::Load& load) {
+  { field.prepare(corners, contact, load) }
+  noexcept;
+};
+
+template <class I>  // does the load move the face at all; false for a default load
+concept HasMoves = requires(const I& field, const typename I::Load& load, std::size_t face) {
+  { field.moves(load, face) }
+  noexcept->std::same_as<bool>;
+};
+
+template <class I>  // do two loads give the same field on the face, bit for bit; may say false when in doubt
+concept HasSame = requires(const I& field, const typename I::Load& load, std::size_t face) {
+  { field.same(load, load, face) }
+  noexcept->std::same_as<bool>;
+};
+
+/// Adds the field at the block that starts at slot `first` of the face to x, y, z [m]. `scale`, if not null, multiplies
+/// the contact's displacement per vertex (V.B). All four hold `block_size` entries.
+template <class I>
+concept HasAdd = requires(const I& field, const typename I::Load& load, std::size_t face, std::size_t first,
+                          const typename I::Scalar* scale, typename I::Scalar* x) {
+  { field.add(load, face, first, scale, x, x, x) }
+  noexcept;
+};
+
+/// Continuous over the surface and in its inputs; D at the contact's place and u_i at the corners; zero corners and
+/// zero D give exactly zero; turning all vectors turns the field.
+template <class I>
+concept Interpolation = Real<typename I::Scalar> && HasLoad<I> && HasPartition<I> && HasPrepare<I> &&
+    HasMoves<I> && HasSame<I> && HasAdd<I> && std::copyable<I>;
+
+namespace detail {
+
+/// out += sum over rows r of row_r value[r]. A face has at least three corners; a split triangle has four rows.
+template <Real S>
+inline void add_rows(const WeightBlock<S>& w, const S* value, S* PALPATE_RESTRICT out) noexcept {
+  const S* PALPATE_RESTRICT const a = w.row[0];
+  const S* PALPATE_RESTRICT const b = w.row[1];
+  const S* PALPATE_RESTRICT const c = w.row[2];
+  const S va = value[0], vb = value[1], vc = value[2];
+  if (w.rows == 3) {
+    for (std::size_t i = 0; i < block_size; ++i) out[i] += a[i] * va + b[i] * vb + c[i] * vc;
+    return;
+  }
+  const S* PALPATE_RESTRICT const d = w.row[3];
+  const S vd = value[3];
+  for (std::size_t i = 0; i < block_size; ++i) out[i] += (a[i] * va + b[i] * vb) + (c[i] * vc + d[i] * vd);
+  for (std::size_t r = 4; r < w.rows; ++r) {
+    const S* PALPATE_RESTRICT const row = w.row[r];
+    const S v = value[r];
+    for (std::size_t i = 0; i < block_size; ++i) out[i] += row[i] * v;
+  }
+}
+
+/// 1 / sqrt(x) for x >= 0 to 4 ulp, finite at 0. std::sqrt may have to set errno, and then loops do not vectorise.
+/// Source: [lomont2003]; Newton steps until rounding.
+template <Real S>
+[[nodiscard]] inline S inverse_root(S x) noexcept {
+  if constexpr (sizeof(S) == 4) {
+    S y = std::bit_cast<S>(0x5f375a86u - (std::bit_cast<std::uint32_t>(x) >> 1));
+    const S half = S(0.5) * x;
+    y *= S(1.5) - half * y * y;
+    y *= S(1.5) - half * y * y;
+    return y * (S(1.5) - half * y * y);
+  } else {
+    S y = std::bit_cast<S>(std::uint64_t{0x5fe6ec85e7de30da} - (std::bit_cast<std::uint64_t>(x) >> 1));
+    const S half = S(0.5) * x;
+    y *= S(1.5) - half * y * y;
+    y *= S(1.5) - half * y * y;
+    y *= S(1.5) - half * y * y;
+    return y * (S(1.5) - half * y * y);
+  }
+}
+
+}  // namespace detail
+
+}  // namespace palpate

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Interpolation of displacement vectors: the plain one.
+
+#include <palpate/interpolation/concept.hpp>
+
+#include <utility>
+
+namespace palpate {
+
+/// Linear interpolation of the corners' displacement vectors over each face.
+///
+///     u(v) = sum_i w_i(v) u_i + mu(v) D
+///
+/// | symbol   | name                   | unit | range                                            |
+/// |----------|------------------------|------|--------------------------------------------------|
+/// | u_i, D   | corners, displacement  | m    | below 1e6; otherwise nothing moves               |
+/// | w_i, mu  | weights                | -    | of `FacePartition`: >= 0, sum 1                  |
+///
+/// The field never leaves the convex hull of u_i and D, is linear in the load, and reproduces affine displacements
+/// of the polyhedron of extremal points while the contact is outside the partition's fade band.
+/// No equation: V.A.2 interpolates magnitude and angle instead, see PhongInterpolation.
+template <Real S>
+class LinearInterpolation {
+ public:
+  using Scalar = S;
+
+  struct Load {
+    bool active = false;
+    PointWeights<S> at;
+    std::array<Vec3<S>, max_extremal_points> corner;  ///< u_i [m], read for active loads only
+    Vec3<S> contact = Vec3<S>::Zero();                ///< D [m]
+  };
+
+  explicit LinearInterpolation(FacePartition<S> partition) : partition_(std::move(partition)) {}
+
+  [[nodiscard]] const FacePartition<S>& partition() const noexcept { return partition_; }
+
+  void prepare(std::span<const Vec3<S>> corners, const ContactDisplacement<S>& contact,
+               Load& load) const noexcept {
+    load.active = false;
+    if (corners.size() != partition_.points().size() || !is_drawable(contact)) return;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+      if (!is_drawable(corners[i])) return;
+      load.corner[i] = corners[i];
+    }
+    load.at = partition_.locate(contact.place);
+    load.contact = contact.displacement;
+    load.active = load.at.valid;
+  }
+
+  [[nodiscard]] bool moves(const Load& load, std::size_t face) const noexcept {
+    if (!load.active) return false;
+    const Face<S>& f = partition_.faces()[face];
+    for (std::size_t k = 0; k < f.corners; ++k) {
+      if (!load.corner[f.corner[k]].isZero(S(0))) return true;
+    }
+    return !load.contact.isZero(S(0)) && partition_.share(load.at, face) > S(0);
+  }
+
+  [[nodiscard]] bool same(const Load& a, const Load& b, std::size_t face) const noexcept {
+    if (!a.active || !b.active) return !moves(a, face) && !moves(b, face);
+    const Face<S>& f = partition_.faces()[face];
+    for (std::size_t k = 0; k < f.corners; ++k) {
+      if (a.corner[f.corner[k]] != b.corner[f.corner[k]]) return false;
+    }
+    const bool split = partition_.share(a.at, face) > S(0) || partition_.share(b.at, face) > S(0);
+    return !split || (a.contact == b.contact && a.at.weight == b.at.weight);
+  }
+
+  void add(const Load& load, std::size_t face, std::size_t first, const S* scale, S* x, S* y,
+           S* z) const noexcept {
+    if (!load.active) return;
+    const Face<S>& f = partition_.faces()[face];
+    WeightBlock<S> w;
+    partition_.weights(load.at, face, first, w);
+    if (scale != nullptr && w.rows > f.corners) {
+      S* PALPATE_RESTRICT const mu = w.storage[f.corners].value;
+      for (std::size_t i = 0; i < block_size; ++i) mu[i] *= scale[i];
+    }
+    S* const out[3] = {x, y, z};
+    for (int axis = 0; axis < 3; ++axis) {
+      std::array<S, max_face_corners + 1> value;
+      for (std::size_t k = 0; k < f.corners; ++k) value[k] = load.corner[f.corner[k]][axis];
+      value[f.corners] = load.contact[axis];
+      detail::add_rows(w, value.data(), out[axis]);
+    }
+  }
+
+ private:
+  FacePartition<S> partition_;
+};
+
+static_assert(Interpolation<LinearInterpolation<float>> && Interpolation<LinearInterpolation<double>>);
+
+}  // namespace palpate

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Interpolation of least bending energy: no creases between faces.
+
+#include <palpate/interpolation/concept.hpp>
+#include <palpate/interpolation/triharmonic.hpp>
+
+#include <utility>
+
+namespace palpate {
+
+/// Displacement vectors interpolated by a triharmonic spline in space, see `TriharmonicSpline`:
+///
+///     u(v) = sum_i L_i(v) u_i + H(v) (D - sum_i L_i(p) u_i)
+///
+/// | symbol | name                  | unit | range                                                       |
+/// |--------|-----------------------|------|-------------------------------------------------------------|
+/// | u_i, D | corners, displacement | m    | below 1e6; otherwise nothing moves                          |
+/// | L_i    | cardinal functions    | -    | 1 at point i, 0 at the others; set up once                  |
+/// | H      | of the contact at p   | -    | 0 at the extremal points, 1 at p                            |
+///
+/// Twice continuously differentiable in space off the corners, linear in the load, exact on affine fields. Every
+/// vertex moves with every corner: it costs n + 1 kernels per vertex where the others cost 4 weights, and the field
+/// may leave the corners' range.
+template <Real S>
+class SmoothInterpolation {
+ public:
+  using Scalar = S;
+
+  struct Load {
+    bool active = false;
+    Vec3<S> place = Vec3<S>::Zero();                  // reduced
+    std::array<Vec3<S>, max_extremal_points> kernel;  // read for active loads only
+    Vec3<S> moving = Vec3<S>::Zero();
+    std::array<Vec3<S>, 4> affine{};
+    std::array<S, max_extremal_points> own{};  // H, for the local neighbourhood
+    S own_moving = 0;
+    std::array<S, 4> own_affine{};
+    Vec3<S> contact = Vec3<S>::Zero();  // D
+  };
+
+  explicit SmoothInterpolation(FacePartition<S> partition)
+      : partition_(std::move(partition)), spline_(places(partition_)) {
+    const std::size_t n = partition_.size();
+    kernels_.resize(spline_.size() * n + block_size);  // the last block reads to its end
+    for (std::vector<S>& array : reduced_) array.resize(n + block_size);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec3<double> x =
+          spline_.reduced(Vec3<S>(partition_.rest(0)[i], partition_.rest(1)[i], partition_.rest(2)[i])
+                              .template cast<double>());
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        reduced_[axis][i] = static_cast<S>(x[static_cast<int>(axis)]);
+      for (std::size_t j = 0; j < spline_.size(); ++j)
+        kernels_[j * n + i] = static_cast<S>(TriharmonicSpline::kernel(x - spline_.sites()[j]));
+    }
+  }
+
+  [[nodiscard]] const FacePartition<S>& partition() const noexcept { return partition_; }
+
+  void prepare(std::span<const Vec3<S>> corners, const ContactDisplacement<S>& contact,
+               Load& load) const noexcept {
+    load.active = false;
+    if (corners.size() != spline_.size() || !is_drawable(contact)) return;
+    bool still = contact.displacement.isZero(S(0));
+    for (const Vec3<S>& u : corners) {
+      if (!is_drawable(u)) return;
+      still = still && u.isZero(S(0));
+    }
+    if (still) return;
+    const Vec3<double> p = spline_.reduced(contact.place.template cast<double>());
+    // Beyond this the cubes would swamp the field; a contact is on the surface, so it is never far.
+    if (!palpate::is_finite(p) || !(p.squaredNorm() < 100)) return;
+    std::array<double, max_extremal_points> cardinal, values;
+    TriharmonicSpline::Function own, part;
+    spline_.cardinals(p, cardinal.data());
+    spline_.moving(p, cardinal.data(), own);
+    load.place = p.template cast<S>();
+    load.contact = contact.displacement;
+    load.own_moving = static_cast<S>(own.moving);
+    for (std::size_t j = 0; j < spline_.size(); ++j) load.own[j] = static_cast<S>(own.kernel[j]);
+    for (std::size_t a = 0; a < 4; ++a) load.own_affine[a] = static_cast<S>(own.affine[a]);
+    for (int axis = 0; axis < 3; ++axis) {
+      double rest = static_cast<double>(contact.displacement[axis]);
+      for (std::size_t i = 0; i < spline_.size(); ++i) {
+        values[i] = static_cast<double>(corners[i][axis]);
+        rest -= cardinal[i] * values[i];
+      }
+      spline_.through(values.data(), part);
+      for (std::size_t j = 0; j < spline_.size(); ++j)
+        load.kernel[j][axis] = static_cast<S>(part.kernel[j] + rest * own.kernel[j]);
+      for (std::size_t a = 0; a < 4; ++a)
+        load.affine[a][axis] = static_cast<S>(part.affine[a] + rest * own.affine[a]);
+      load.moving[axis] = static_cast<S>(rest * own.moving);
+    }
+    load.active = true;
+  }
+
+  [[nodiscard]] bool moves(const Load& load, std::size_t) const noexcept { return load.active; }
+
+  [[nodiscard]] bool same(const Load& a, const Load& b, std::size_t) const noexcept {
+    if (!a.active || !b.active) return a.active == b.active;
+    for (std::size_t j = 0; j < spline_.size(); ++j) {
+      if (a.kernel[j] != b.kernel[j]) return false;
+    }
+    return a.place == b.place && a.moving == b.moving && a.affine == b.affine && a.contact == b.contact;
+  }
+
+  void add(const Load& load, std::size_t, std::size_t first, const S* scale, S* x, S* y,
+           S* z) const noexcept {
+    if (!load.active) return;
+    Block<S> moving;
+    const S px = load.place.x(), py = load.place.y(), pz = load.place.z();
+    const S* PALPATE_RESTRICT const vx = &reduced_[0][first];
+    const S* PALPATE_RESTRICT const vy = &reduced_[1][first];
+    const S* PALPATE_RESTRICT const vz = &reduced_[2][first];
+    for (std::size_t i = 0; i < block_size; ++i) {
+      const S dx = vx[i] - px, dy = vy[i] - py, dz = vz[i] - pz, square = dx * dx + dy * dy + dz * dz;
+      moving[i] = square * square * detail::inverse_root(square);
+    }
+    S* const out[3] = {x, y, z};
+    std::array<S, max_extremal_points> factor;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (std::size_t j = 0; j < spline_.size(); ++j) factor[j] = load.kernel[j][axis];
+      evaluate(first,
+               {load.affine[0][axis], load.affine[1][axis], load.affine[2][axis], load.affine[3][axis]},
+               factor.data(), load.moving[axis], moving.value, out[axis]);
+    }
+    if (scale == nullptr) return;
+    Block<S> own;
+    for (std::size_t i = 0; i < block_size; ++i) own[i] = S(0);
+    evaluate(first, load.own_affine, load.own.data(), load.own_moving, moving.value, own.value);
+    for (int axis = 0; axis < 3; ++axis) {
+      S* PALPATE_RESTRICT const u = out[axis];
+      const S D = load.contact[axis];
+      for (std::size_t i = 0; i < block_size; ++i) u[i] += own[i] * (scale[i] - S(1)) * D;
+    }
+  }
+
+ private:
+  // out += the function with these coefficients.
+  void evaluate(std::size_t first, const std::array<S, 4>& affine, const S* factor, S moving_factor,
+                const S* PALPATE_RESTRICT moving, S* PALPATE_RESTRICT out) const noexcept {
+    const S* PALPATE_RESTRICT const vx = &reduced_[0][first];
+    const S* PALPATE_RESTRICT const vy = &reduced_[1][first];
+    const S* PALPATE_RESTRICT const vz = &reduced_[2][first];
+    const S b = affine[0], ax = affine[1], ay = affine[2], az = affine[3];
+    for (std::size_t i = 0; i < block_size; ++i)
+      out[i] += b + vx[i] * ax + vy[i] * ay + vz[i] * az + moving[i] * moving_factor;
+    const std::size_t stride = partition_.size();
+    std::size_t j = 0;
+    for (; j + 2 <= spline_.size(); j += 2) {  // two at a time: half the passes over `out`
+      const S* PALPATE_RESTRICT const k = &kernels_[j * stride + first];
+      const S* PALPATE_RESTRICT const l = &kernels_[(j + 1) * stride + first];
+      const S c = factor[j], d = factor[j + 1];
+      for (std::size_t i = 0; i < block_size; ++i) out[i] += k[i] * c + l[i] * d;
+    }
+    for (; j < spline_.size(); ++j) {
+      const S* PALPATE_RESTRICT const k = &kernels_[j * stride + first];
+      const S c = factor[j];
+      for (std::size_t i = 0; i < block_size; ++i) out[i] += k[i] * c;
+    }
+  }
+
+  static std::vector<Vec3<double>> places(const FacePartition<S>& partition) {
+    std::vector<Vec3<double>> sites;
+    for (const ExtremalPoint<S>& point : partition.points())
+      sites.push_back(point.position.template cast<double>());
+    return sites;
+  }
+
+  FacePartition<S> partition_;
+  TriharmonicSpline spline_;
+  std::array<std::vector<S>, 3> reduced_;  // vertices in the spline's coordinates
+  std::vector<S> kernels_;                 // |v - e_j|^3, site by site
+};
+
+static_assert(Interpolation<SmoothInterpolation<float>> && Interpolation<SmoothInterpolation<double>>);
+
+}  // namespace palpate

@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Loads on an elastic half-space in closed form: point force (Boussinesq, Cerruti), stuck flat disc, Hertz
+/// pressure. Everything times 4 pi mu; divide by it at the end.
+///
+/// m: unit normal into the body, r = x - contact, z = r.m, p = r - z m, R = |r|, f = f_t + f_n m the force.
+///     u = f/R + r (f.r)/R^3 + (1-2 nu) v,
+///     v = f_n (m/R - p/(R(R+z))) + f_t/(R+z) - p (f_t.p)/(R (R+z)^2) + m (f_t.p)/(R(R+z)),   div v = -2 f.r/R^3
+/// The first part is twice Kelvin's solution at nu = 1/2 and does not know m. Source: [johnson1985], ch. 3.
+///
+/// A disc with the weight 1/(2 pi a sqrt(a^2 - s^2)): every harmonic function h(p, z) of the point solution becomes
+/// (1/a) Im of its antiderivative in z, taken at z + i a (a point source at a complex place). With
+/// q = z + i a, R = sqrt(p^2 + q^2), l = ln(R + q):
+///     1/R -> phi = Im l / a,   ln(R+z) -> L = Im(q l - R) / a,   z ln(R+z) - R -> X = Im((q^2/2 - p^2/4) l - 3 q R/4) / a
+///     normal:      u = f_n [ -z grad phi + (1 + (1-2 nu)) phi m - (1-2 nu) grad_p L ]
+///     tangential:  u = 2 f phi - z grad_p d_f L + 2 nu grad_p d_f X + m [ -z d_f phi + (1-2 nu) d_f L ]
+
+#include <palpate/core/vector.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <concepts>
+#include <numbers>
+
+namespace palpate {
+
+/// Displacement times 4 pi mu at r of the point force f on the half-space's surface. r != 0. `regular` >= 0 [m^2] is
+/// added to R^2 (0: exact).
+template <class T>
+[[nodiscard]] inline Vec3<T> point_load(const Vec3<T>& r, const Vec3<T>& m, const Vec3<T>& f, T nu, T regular = T(0)) noexcept {
+  const T R2 = r.squaredNorm() + regular, R = std::sqrt(R2), inverse = T(1) / R;
+  Vec3<T> u = inverse * f + (f.dot(r) * inverse / R2) * r;
+  const T b = T(1) - T(2) * nu;
+  if (b > T(0)) {
+    const T z = r.dot(m), fn = f.dot(m);
+    const Vec3<T> p = r - z * m, ft = f - fn * m;
+    // Over a hollow of the body R + z may vanish; there the closed form is bounded instead of exact.
+    const T sum = (std::max)(R + z, T(0.1) * R), s1 = T(1) / sum, fp = ft.dot(p);
+    u += b * (fn * (inverse * m - (inverse * s1) * p) + s1 * ft - (fp * inverse * s1 * s1) * p + (fp * inverse * s1) * m);
+  }
+  return u;
+}
+
+/// Traction on a plane with outward normal n at r, of the displacement above / (4 pi mu), with mu = 1.
+[[nodiscard]] inline Mat3<double> point_load_traction(const Vec3<double>& r, const Vec3<double>& m, const Vec3<double>& n,
+                                                      double nu) noexcept {
+  using V = Vec3<double>;
+  constexpr double pi = std::numbers::pi;
+  const double R2 = r.squaredNorm(), R = std::sqrt(R2), R3 = R2 * R;
+  Mat3<double> t = (-1.5 / pi * r.dot(n) / (R2 * R3)) * (r * r.transpose());  // columns: force directions
+  const double b = 1 - 2 * nu;
+  if (!(b > 0)) return t;
+  // Strain of v by its gradient. A = 1/(R+z), a_i = dA/dx_i.
+  const double z = r.dot(m), sum = (std::max)(R + z, 0.1 * R), A = 1 / sum, iR = 1 / R;
+  const V p = r - z * m, e = r * iR;
+  const Mat3<double> I = Mat3<double>::Identity(), P = I - m * m.transpose();
+  const V dA = -(A * A) * (e + m), dR = -(iR * iR) * e;  // gradients of A and 1/R
+  const V dB = A * dR + iR * dA;                         // of B = A/R
+  const double B = A * iR, C = A * B;
+  const V dC = A * dB + B * dA;
+  for (int k = 0; k < 3; ++k) {
+    const V f = V::Unit(k);
+    const double fn = f.dot(m);
+    const V ft = f - fn * m;
+    const double fp = ft.dot(p);
+    // G(i, j) = d v_i / d x_j
+    const Mat3<double> G = fn * (m * dR.transpose() - p * dB.transpose() - B * P) + ft * dA.transpose() -
+                           fp * (p * dC.transpose()) - C * (p * ft.transpose()) - (C * fp) * P +
+                           m * (fp * dB + B * ft).transpose();
+    t.col(k) += b * (f.dot(r) / (2 * pi * R3) * n + (G + G.transpose()) * n / (4 * pi));
+  }
+  return t;
+}
+
+namespace detail {
+/// Eight places at a time, for the tick's long loops; Eigen maps it to the machine's registers.
+using Lane = Eigen::Array<float, 8, 1>;
+
+template <class S>
+[[nodiscard]] inline S larger(const S& a, const S& b) noexcept {
+  if constexpr (std::floating_point<S>) return a > b ? a : b;
+  else return a.max(b);
+}
+template <class S>
+[[nodiscard]] inline S where_positive(const S& x, const S& yes, const S& no) noexcept {
+  if constexpr (std::floating_point<S>) return x >= S(0) ? yes : no;
+  else {
+    const S step = (x * 1e30f).max(0.f).min(1.f);  // arithmetic: a select would leave the registers
+    return no + step * (yes - no);
+  }
+}
+/// atan2(y, x) for x >= 0, y >= 0, not both 0; in lanes to 2e-6 by a polynomial.
+template <class S>
+[[nodiscard]] inline S first_quadrant_angle(const S& y, const S& x) noexcept {
+  if constexpr (std::floating_point<S>) {
+    return std::atan2(y, x);
+  } else {
+    const S t = x.min(y) / x.max(y), t2 = t * t;
+    const S p = t * (0.99997726f + t2 * (-0.33262347f + t2 * (0.19354346f + t2 * (-0.11643287f + t2 * (0.05265332f - t2 * 0.01172120f)))));
+    const S step = ((y - x) * 1e30f).max(0.f).min(1.f);
+    return p + step * (1.57079633f - 2.f * p);
+  }
+}
+}  // namespace detail
+
+/// A disc of radius a seen from distance p off its axis and depth z >= 0. S: a real number or a lane of them; F: a real
+/// number. Weights: stuck flat disc 1/(2 pi a sqrt(a^2-s^2)); Hertz 3 sqrt(a^2-s^2)/(2 pi a^3).
+/// Every field is 4 pi mu u = in_plane p + normal m + along t, with t the tangential part of the load.
+template <class S, class F = S>
+class Disc {
+ public:
+  struct Field {
+    S in_plane, normal, along;
+  };
+
+  Disc(const S& p2, const S& depth, F radius) noexcept : z_(depth), p2_(p2), a_(radius) {
+    using std::abs;
+    using std::sqrt;
+    const S re = p2 + z_ * z_ - a_ * a_, im = F(2) * a_ * z_;
+    const S modulus = sqrt(re * re + im * im);
+    // The root's larger part by sum, the smaller from the product: no cancellation. At the rim R = 0 is held off.
+    const S half = F(0.5) * (modulus + abs(re)), root = sqrt(half), hold = z_ * F(0) + F(1e-4) * a_;
+    const S large = detail::larger(root, hold), small = F(0.5) * im / large;
+    R_ = {detail::where_positive(re, large, small), detail::where_positive(re, small, large)};
+    const C sum{R_.re + z_, R_.im + a_};
+    angle_ = detail::first_quadrant_angle(sum.im, sum.re);
+    w_ = inverse(sum);
+    iR_ = inverse(R_);
+    wR_ = w_ * iR_;
+    ww_ = w_ * w_;
+    wwR_ = ww_ * iR_;
+  }
+
+  /// Force with normal part fn; fp = t.p with t its tangential part. Flat disc's weight.
+  [[nodiscard]] Field flat(F fn, const S& fp, F nu) const noexcept {
+    const F b = F(1) - F(2) * nu, s = F(1) / a_;
+    const S L_p = -s * w_.im, X_p = F(-0.5) * s * (angle_ + z_ * w_.im + a_ * w_.re);
+    return {s * (fn * (b * w_.im - z_ * wR_.im) - fp * (z_ * wwR_.im + nu * ww_.im)),
+            s * (fn * ((F(1) + b) * angle_ - z_ * iR_.im) - fp * (b * w_.im + z_ * wR_.im)),
+            F(2) * s * angle_ - z_ * L_p + F(2) * nu * X_p};
+  }
+  /// Normal force fn with Hertz's weight.
+  [[nodiscard]] Field hertz(F fn, F nu) const noexcept {
+    const F b = F(1) - F(2) * nu, s = F(3) / (a_ * a_ * a_);
+    const S phi = s * ((F(0.5) * (z_ * z_ + a_ * a_) - F(0.25) * p2_) * angle_ - F(0.75) * z_ * R_.im + F(0.25) * a_ * R_.re);
+    S in_plane = -z_ * hertz_phi_p();
+    if (b > F(0)) {
+      const C q{z_, z_ * F(0) + a_}, sum = R_ * R_ + R_ * q + q * q;
+      in_plane = in_plane - b * s * (F(-0.5) * (z_ * angle_ - R_.im) - (w_ * sum).im / F(6) + F(0.5) * a_ * (q * w_).re);
+    }
+    return {fn * in_plane, fn * ((F(1) + b) * phi - z_ * hertz_phi_z()), z_ * F(0)};
+  }
+  /// Radial double force in the disc's plane, sum x.f = 1; weight minus half the gradient of Hertz's.
+  [[nodiscard]] Field double_force(F nu) const noexcept {
+    const F b = F(1) - F(2) * nu, s = F(3) / (a_ * a_ * a_);
+    const S phi_zp = s * (z_ * wR_.im - iR_.im), phi_zz = s * (angle_ - a_ * iR_.re);
+    return {F(-0.5) * ((F(1) + b) * hertz_phi_p() + z_ * phi_zp), F(-0.5) * (z_ * phi_zz - b * hertz_phi_z()), z_ * F(0)};
+  }
+  /// Normal forces with the moment sum x (f.m) = t, tp = t.p; weight minus the gradient of Hertz's. The part with
+  /// 1 - 2 nu in the plane is left out.
+  [[nodiscard]] Field tilt(const S& tp, F nu) const noexcept {
+    const F b = F(1) - F(2) * nu, s = F(3) / (a_ * a_ * a_);
+    const S phi_p = hertz_phi_p(), phi_2 = s * (F(-0.5) * ww_.im - a_ * wwR_.re), phi_zp = s * (z_ * wR_.im - iR_.im);
+    return {z_ * tp * phi_2, tp * (z_ * phi_zp - (F(1) + b) * phi_p), z_ * phi_p};
+  }
+
+ private:
+  struct C {
+    S re, im;
+    [[nodiscard]] C operator*(const C& o) const noexcept { return {re * o.re - im * o.im, re * o.im + im * o.re}; }
+    [[nodiscard]] C operator+(const C& o) const noexcept { return {re + o.re, im + o.im}; }
+  };
+  [[nodiscard]] static C inverse(const C& c) noexcept {
+    const S d = F(1) / (c.re * c.re + c.im * c.im);
+    return {c.re * d, -c.im * d};
+  }
+  [[nodiscard]] S hertz_phi_p() const noexcept {  // d phi / dp / p
+    return F(3) / (a_ * a_ * a_) * (F(-0.5) * (angle_ + z_ * w_.im + a_ * w_.re) + a_ * w_.re);
+  }
+  [[nodiscard]] S hertz_phi_z() const noexcept { return F(3) / (a_ * a_ * a_) * (z_ * angle_ - R_.im); }
+
+  S z_, p2_, angle_;
+  F a_;
+  C R_, w_, iR_, wR_, ww_, wwR_;  // R, 1/(R + q), 1/R, and products
+};
+
+/// 4 pi mu u at r of the force f spread over a stuck flat disc; m: unit normal into the body.
+[[nodiscard]] inline Vec3<double> disc_load(const Vec3<double>& r, const Vec3<double>& m, double depth, double radius, const Vec3<double>& f,
+                                            double nu) noexcept {
+  const double fn = f.dot(m);
+  const Vec3<double> p = r - r.dot(m) * m, t = f - fn * m;
+  const auto u = Disc<double>(p.squaredNorm(), (std::max)(depth, 0.0), radius).flat(fn, t.dot(p), nu);
+  return u.in_plane * p + u.normal * m + u.along * t;
+}
+
+}  // namespace palpate

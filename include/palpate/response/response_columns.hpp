@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  The body's correction to the half-space: for a unit force at each node, the field w with u = u_near + w.
+/// Set-up only.
+///
+/// u_near: the half-space solution in the node's tangent plane. It meets the elastic equations inside the body, so w does
+/// too, and w is smooth: a coarse mesh resolves it.
+///     H w = -int U t_near dS + G_fixed t ,   w = -u_near on the fixed region
+/// t_near varies fast only near the node. There t_near less its nodal interpolant is integrated by Duffy's map; the rest
+/// is G times nodal values.
+
+#include <palpate/response/boundary_element.hpp>
+#include <palpate/response/near_field.hpp>
+
+namespace palpate {
+
+/// w for unit forces at the touchable nodes, mu = 1: column 3 j + l is the field of direction l at node touchable[j];
+/// row 3 v + i is component i at vertex v [1/m].
+struct ResponseColumns {
+  std::vector<std::uint32_t> touchable;
+  Eigen::MatrixXd w;
+};
+
+namespace detail {
+
+/// -int U t_near dS for the three unit forces at node k, at every vertex (3n x 3).
+class NearSource {
+ public:
+  NearSource(const BoundaryElements& bem, double nu) : bem_(bem), nu_(nu) {}
+
+  /// Nodal t_near of node k, zero at the node itself and where it is not smooth (3 nodes x 3).
+  void nodal(std::uint32_t k, Eigen::Ref<Matrix> out) const {
+    const SolveMesh& m = bem_.mesh();
+    const SolveMesh::Node& s = m.nodes[k];
+    for (std::uint32_t j = 0; j < m.nodes.size(); ++j) {
+      const Vec3d r = m.vertices[m.nodes[j].vertex] - s.source;
+      if (r.norm() < 0.6 * s.size) out.middleRows<3>(3 * Eigen::Index(j)).setZero();
+      else out.middleRows<3>(3 * Eigen::Index(j)) = point_load_traction(r, -s.normal, m.nodes[j].normal, nu_);
+    }
+  }
+
+  /// Adds -int U (t_near - nodal interpolant) over the triangles around node k.
+  void remainder(std::uint32_t k, const Eigen::Ref<const Matrix>& nodal, Eigen::Ref<Matrix> out) const {
+    const SolveMesh& m = bem_.mesh();
+    const SolveMesh::Node& s = m.nodes[k];
+    struct Point {
+      Vec3d x;
+      Mat3<double> f;
+    };
+    std::vector<Point> points;
+    std::vector<ElementPoint> scratch;
+    std::vector<std::pair<std::uint32_t, Mat3<double>>> lumps;
+    for (std::uint32_t t = 0; t < m.triangles.size(); ++t) {
+      const Element& e = bem_.elements()[t];
+      const Vec3d w = closest_weights(s.source, e.corner[0], e.corner[1], e.corner[2]);
+      const double distance = (w[0] * e.corner[0] + w[1] * e.corner[1] + w[2] * e.corner[2] - s.source).norm();
+      if (distance > 2.2 * s.size) continue;
+      scratch.clear();
+      if (distance < 0.6 * s.size) polar_points<6>(e, w, scratch);
+      else element_points(e, radon_rule(), scratch);
+      Mat3<double> lump[3] = {Mat3<double>::Zero(), Mat3<double>::Zero(), Mat3<double>::Zero()};
+      for (const ElementPoint& q : scratch) {
+        const Vec3d r = q.x - s.source;
+        Mat3<double> f = -q.area * point_load_traction(r, -s.normal, q.normal / q.area, nu_);
+        for (int c = 0; c < 3; ++c) f += (q.area * q.weight[c]) * nodal.middleRows<3>(3 * Eigen::Index(m.nodes_of[t][std::size_t(c)]));
+        points.push_back({q.x, f});
+        for (int c = 0; c < 3; ++c) lump[c] += q.weight[c] * f;
+      }
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::uint32_t v = m.triangles[t][c];
+        const auto found = std::find_if(lumps.begin(), lumps.end(), [v](const auto& l) { return l.first == v; });
+        if (found == lumps.end()) lumps.emplace_back(v, lump[c]);
+        else found->second += lump[c];
+      }
+    }
+    double reach = 0;
+    for (const auto& l : lumps) reach = (std::max)(reach, (m.vertices[l.first] - s.source).norm());
+    for (std::uint32_t i = 0; i < m.vertices.size(); ++i) {
+      const Vec3d& x = m.vertices[i];
+      const double distance = (x - s.source).norm();
+      Mat3<double> sum = Mat3<double>::Zero();
+      if (distance > 1.5 * reach) {  // from afar, forces at the vertices do
+        for (const auto& [v, f] : lumps) sum += bem_.kelvin().displacement(m.vertices[v] - x) * f;
+      } else {
+        // At the node itself the mean over a patch is wanted: 1/R^2 is cut off there.
+        const double hold = distance < 0.3 * s.size ? 0.35 * s.size : 0;
+        for (const Point& q : points) {
+          const Vec3d r = q.x - x;
+          if (r.squaredNorm() < hold * hold) continue;
+          sum += bem_.kelvin().displacement(r) * q.f;
+        }
+      }
+      out.middleRows<3>(3 * Eigen::Index(i)) += sum;
+    }
+  }
+
+ private:
+  const BoundaryElements& bem_;
+  double nu_;
+};
+
+}  // namespace detail
+
+/// Solves for every touchable node: those with a free triangle. `bem` must be factorised.
+[[nodiscard]] inline ResponseColumns solve_columns(const BoundaryElements& bem, double nu) {
+  using detail::Matrix;
+  const SolveMesh& m = bem.mesh();
+  ResponseColumns out;
+  std::vector<std::uint8_t> free_node(m.nodes.size(), 0);
+  for (std::size_t t = 0; t < m.triangles.size(); ++t)
+    if (!m.fixed_triangle[t])
+      for (auto k : m.nodes_of[t]) free_node[k] = 1;
+  for (std::uint32_t k = 0; k < m.nodes.size(); ++k)
+    if (free_node[k]) out.touchable.push_back(k);
+  const Eigen::Index n3 = 3 * Eigen::Index(m.vertices.size()), count = Eigen::Index(out.touchable.size());
+  out.w.resize(n3, 3 * count);
+  const detail::NearSource source(bem, nu);
+  constexpr Eigen::Index block = 16;
+  const Eigen::Index blocks = (count + block - 1) / block;
+  detail::parallel_for(static_cast<std::size_t>(blocks), bem.threads(), [&](std::size_t b) {
+    const Eigen::Index first = Eigen::Index(b) * block, size = (std::min)(block, count - first);
+    Matrix traction(3 * Eigen::Index(m.nodes.size()), 3 * size), held(3 * Eigen::Index(bem.fixed().size()), 3 * size);
+    for (Eigen::Index j = 0; j < size; ++j) {
+      const std::uint32_t k = out.touchable[std::size_t(first + j)];
+      const SolveMesh::Node& s = m.nodes[k];
+      source.nodal(k, traction.middleCols<3>(3 * j));
+      for (std::size_t f = 0; f < bem.fixed().size(); ++f) {
+        const std::uint32_t v = bem.fixed()[f];
+        const Vec3<double> r = m.vertices[v] - s.source;
+        // The node's own vertex, on the rim: the mean over a disc of half the edge length.
+        const bool own = r.norm() < 0.3 * s.size;
+        for (int l = 0; l < 3; ++l) {
+          const Vec3<double> e = Vec3<double>::Unit(l);
+          const Vec3<double> u = own ? disc_load(r, -s.normal, 0, 0.5 * s.size, e, nu) : point_load<double>(r, -s.normal, e, nu);
+          held.block<3, 1>(3 * Eigen::Index(f), 3 * j + l) = u / (4 * std::numbers::pi);
+        }
+      }
+    }
+    auto columns = out.w.middleCols(3 * first, 3 * size);
+    columns.noalias() = bem.H_fixed() * held;
+    columns.noalias() -= bem.G() * traction;
+    for (Eigen::Index j = 0; j < size; ++j)
+      source.remainder(out.touchable[std::size_t(first + j)], traction.middleCols<3>(3 * j), columns.middleCols<3>(3 * j));
+  });
+  bem.solve(out.w);
+  // The fixed vertices' rows hold tractions: there w = -u_near.
+  for (std::size_t f = 0; f < bem.fixed().size(); ++f) {
+    const std::uint32_t v = bem.fixed()[f];
+    for (Eigen::Index j = 0; j < count; ++j) {
+      const SolveMesh::Node& s = m.nodes[out.touchable[std::size_t(j)]];
+      const Vec3<double> r = m.vertices[v] - s.source;
+      const bool own = r.norm() < 0.3 * s.size;
+      for (int l = 0; l < 3; ++l) {
+        const Vec3<double> e = Vec3<double>::Unit(l);
+        const Vec3<double> u = own ? disc_load(r, -s.normal, 0, 0.5 * s.size, e, nu) : point_load<double>(r, -s.normal, e, nu);
+        out.w.block<3, 1>(3 * Eigen::Index(v), 3 * j + l) = -u / (4 * std::numbers::pi);
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace palpate

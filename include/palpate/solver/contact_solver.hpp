@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  The only place where all of it meets: one servo tick, from the tool's pose to the wrench on it.
+/// The include list is the data flow.
+
+// clang-format off
+#include <palpate/core/pose.hpp>
+#include <palpate/core/status.hpp>
+#include <palpate/core/absent.hpp>
+#include <palpate/core/fixed_vector.hpp>
+#include <palpate/surface/concept.hpp>
+#include <palpate/detection/tool_points.hpp>
+#include <palpate/region/topology.hpp>
+#include <palpate/region/coupling.hpp>
+#include <palpate/force/concept.hpp>
+#include <palpate/friction/none.hpp>
+#include <palpate/equivalent/region_sum.hpp>
+#include <palpate/equivalent/anchor.hpp>
+#include <palpate/equivalent/contact_state.hpp>
+#include <palpate/solver/gather.hpp>
+// clang-format on
+
+#include <array>
+#include <concepts>
+#include <span>
+#include <type_traits>
+#include <utility>
+
+namespace palpate {
+
+/// Where the contact force acts on the tool.
+struct AtContact {};     ///< at the pressure centre: the wrench has a torque about the centre of mass (6 DOF)
+struct AtMassCentre {};  ///< at the centre of mass, the paper's assumption (section II): no torque
+
+template <class W>
+concept WrenchPolicy = std::same_as<W, AtContact> || std::same_as<W, AtMassCentre>;
+
+/// What a tick returns. The regions behind it: ContactSolver::contacts().
+template <Real S>
+struct TickResult {
+  Wrench<S> wrench;  ///< on the tool, object coordinates: force [N], torque about its centre of mass [N m]
+  Status status;
+};
+
+/// Contact of a rigid tool with an elastic object: sections II to IV of [luo2005], one tick at a time.
+///
+/// | role       | parameter  | ships                                                               | default      |
+/// |------------|------------|---------------------------------------------------------------------|--------------|
+/// | object     | `Object`   | Sphere, Ellipsoid, Box, Cylinder, Superellipsoid                    |              |
+/// | force law  | `Force`    | DuffingForce, LinearForce, PowerLawForce, TabulatedForce, decorators |              |
+/// | friction   | `Friction` | Frictionless, CoulombFriction, PowerLawFriction                     | Frictionless |
+/// | regions    | `Contacts` | SinglePoint, SingleRegion, Regions<N>                               | SinglePoint  |
+/// | wrench     | `Acting`   | AtContact, AtMassCentre                                             | AtContact    |
+/// | coupling   | `Coupling` | IndependentRegions, RegionSkeletons (section VI)                    | IndependentRegions |
+///
+/// Slip and skew rules belong to the friction law, mass sharing to the topology. An absent policy is a type and costs
+/// no byte and no instruction.
+///
+/// Real time: tick() is noexcept, takes no heap, lock or I/O, and its time is bounded by the tool's points. Same poses,
+/// same bits. A pose that is not finite or not a rotation gives the zero wrench and `Status::invalid_pose`; contact is
+/// forgotten and begins anew at the next usable pose.
+template <ContactSurface Object, ForceLaw Force, FrictionLaw Friction = Frictionless<typename Object::Scalar>,
+          Topology Contacts = SinglePoint, WrenchPolicy Acting = AtContact,
+          RegionForceCoupling Coupling = IndependentRegions>
+  requires std::same_as<typename Object::Scalar, typename Force::Scalar> &&
+           std::same_as<typename Object::Scalar, typename Friction::Scalar>
+class ContactSolver {
+ public:
+  using Scalar = typename Object::Scalar;
+  using S = Scalar;
+  using Tool = typename Contacts::template Tool<S>;
+  static constexpr std::size_t max_regions = Contacts::max_regions;
+  static constexpr bool has_friction = Friction::active;
+  static constexpr bool is_rate_dependent = RateDependentForceLaw<Force>;
+
+  /// What a solver is made of. Each part has checked itself when it was made.
+  struct Parts {
+    Object object;
+    Tool tool;
+    Force force;
+    PALPATE_NO_UNIQUE_ADDRESS Friction friction{};
+    PALPATE_NO_UNIQUE_ADDRESS Contacts contacts{};
+    PALPATE_NO_UNIQUE_ADDRESS Coupling coupling{};
+  };
+
+  /// @throws SetupError where the clustering distance of `Regions` is not positive, or joins too many points.
+  explicit ContactSolver(Parts parts)
+      : object_(std::move(parts.object)),
+        tool_(std::move(parts.tool)),
+        force_(std::move(parts.force)),
+        friction_(std::move(parts.friction)),
+        coupling_(std::move(parts.coupling)),
+        collector_(parts.contacts, tool_) {}
+
+  /// One tick with the tool at X (tool to object coordinates).
+  [[nodiscard]] TickResult<S> tick(const Pose<S>& X) noexcept
+    requires(!is_rate_dependent)
+  {
+    return step(X, S(0), Status::ok);
+  }
+
+  /// One tick, dt [s] after the last. Only rate-dependent force laws use dt; if it is not finite or not > 0 the rate
+  /// terms are left out of this tick (`Status::invalid_step`).
+  [[nodiscard]] TickResult<S> tick(const Pose<S>& X, [[maybe_unused]] S dt) noexcept {
+    if constexpr (is_rate_dependent) {
+      if (!is_finite(dt) || !(dt > S(0))) return step(X, S(0), Status::invalid_step);
+    }
+    return step(X, dt, Status::ok);
+  }
+
+  /// The regions of the last tick: values to hand over, record or draw.
+  [[nodiscard]] std::span<const ContactState<S>> contacts() const noexcept {
+    return {contacts_.begin(), contacts_.size()};
+  }
+
+  /// p0 of a contact: the origin of its deformation, on the undeformed surface [m].
+  [[nodiscard]] Vec3<S> origin(const ContactState<S>& contact) const noexcept {
+    return object_.closest(contact.origin()).position;
+  }
+
+  /// Forgets all contact, as after a calibration of the device.
+  void reset() noexcept {
+    contacts_.clear();
+    collector_.reset();
+    if constexpr (is_rate_dependent) last_.known = false;
+  }
+
+  [[nodiscard]] const Object& object() const noexcept { return object_; }
+  [[nodiscard]] const Tool& tool() const noexcept { return tool_; }
+  [[nodiscard]] const Force& force_law() const noexcept { return force_; }
+  [[nodiscard]] const Friction& friction_law() const noexcept { return friction_; }
+
+ private:
+  using Sums = std::array<RegionSum<S>, max_regions>;
+
+  struct Stuck {  // what friction remembers of a region
+    Anchor<S> anchor;
+    Vec3<S> friction;  // of the last tick [N]
+    S depth;           // D_n of the last tick [m]
+  };
+  struct LastPose {  // what a rate-dependent law remembers
+    Pose<S> pose;
+    bool known = false;
+  };
+  template <class Item, int Role, bool present>
+  using Present = std::conditional_t<present, Item, Absent<Role>>;
+
+  TickResult<S> step(const Pose<S>& X, [[maybe_unused]] S dt, Status status) noexcept {
+    if (!is_usable(X)) {
+      reset();
+      return {{}, status | Status::invalid_pose};
+    }
+    contacts_.clear();
+    Sums sums;
+    status |= collector_.collect(object_, tool_, force_, X, sums);
+    Wrench<S> wrench;
+    if (has(status, Status::contact)) {
+      if constexpr (has_friction && ClusteredTopology<Contacts>) {
+        if (collector_.changed()) inherit(X, sums);
+      }
+      for (std::size_t k = 0; k < max_regions; ++k) {
+        if (collector_.slot(k).active) press(k, sums[k], X, dt, wrench);
+      }
+      if constexpr (Coupling::active) couple(X, wrench);
+    }
+    if constexpr (is_rate_dependent) last_ = {X, true};
+    if (!is_finite(wrench.force) || !is_finite(wrench.torque)) {
+      reset();
+      return {{}, status | Status::non_finite_result};
+    }
+    return {wrench, status};
+  }
+
+  /// One region: equivalent contact, rate term, friction; adds its force to the wrench.
+  void press(std::size_t k, RegionSum<S>& sum, const Pose<S>& X, [[maybe_unused]] S dt, Wrench<S>& wrench) noexcept {
+    const RegionSlot& slot = collector_.slot(k);
+    const Vec3<S> normal = sum.normal();
+    S normal_force = sum.force.norm();
+    const S depth = equivalent_depth(sum, normal_force);
+    if constexpr (is_rate_dependent) {
+      if (dt > S(0) && last_.known && normal_force > (std::numeric_limits<S>::min)()) {
+        // How fast the tool's point at the pressure centre goes in. Differences of depths would jump when regions merge.
+        const Vec3<S> centre = sum.centre();
+        const S gone_in = normal.dot(last_.pose * X.to_tool(centre) - centre);
+        const S rate = (std::min)(gone_in, sum.deepest) / dt;  // no deeper than it came
+        const S total = (std::max)(normal_force + (force_.force(depth, rate) - force_.force(depth)), S(0));
+        sum.scale(total / normal_force);
+        normal_force = total;
+      }
+    }
+    ContactState<S> contact{slot.id,      sum.points,        ContactMode::frictionless, sum.centre(),
+                            normal,       -depth * normal,   sum.force,                 Vec3<S>::Zero(),
+                            normal_force, sum.area()};
+    if constexpr (has_friction) {
+      Stuck& stuck = stuck_[k];
+      if (slot.merged == 0 && slot.parent == RegionSlot::none) {
+        stuck.anchor = Anchor<S>::begin(X, contact.centre, normal, depth);
+      }
+      const AnchoredForce<S> held = advance<typename Friction::Slip, typename Friction::Skew>(
+          stuck.anchor, friction_, force_, X, normal, contact.centre, depth, normal_force);
+      if (normal_force > S(0)) sum.scale(held.normal_force / normal_force);
+      stuck.friction = held.friction;
+      stuck.depth = depth;
+      contact.mode = stuck.anchor.slip.sliding ? ContactMode::sliding : ContactMode::sticking;
+      contact.centre = held.at;
+      contact.displacement += held.stretch;
+      contact.friction = held.friction;
+      contact.force = sum.force + held.friction;
+      contact.normal_force = held.normal_force;
+      if constexpr (std::same_as<Acting, AtContact>) {
+        wrench.torque += (held.at - X * centre_of_mass()).cross(held.friction);
+      }
+    }
+    wrench.force += contact.force;
+    if constexpr (std::same_as<Acting, AtContact>) wrench.torque += sum.torque;
+    contacts_.push_back(contact);
+  }
+
+  /// Section VI: adds to each region's force what the other regions pass on through the body.
+  void couple(const Pose<S>& X, Wrench<S>& wrench) noexcept {
+    if (contacts_.size() < 2) return;
+    std::array<typename Coupling::Contact, max_regions> loaded;
+    for (std::size_t j = 0; j < contacts_.size(); ++j) {
+      const ContactState<S>& c = contacts_[j];
+      loaded[j] = {c.origin(), -c.force, c.displacement, c.normal_force};
+    }
+    coupling_.share({loaded.data(), contacts_.size()}, passed_on_);
+    for (std::size_t j = 0; j < passed_on_.from_others.size(); ++j) {
+      const Vec3<S>& f = passed_on_.from_others[j];
+      contacts_[j].force += f;
+      wrench.force += f;
+      if constexpr (std::same_as<Acting, AtContact>) {
+        wrench.torque += (contacts_[j].centre - X * centre_of_mass()).cross(f);
+      }
+    }
+  }
+
+  /// D_n of the point contact with the same force (IV.C); a single point is its own.
+  [[nodiscard]] S equivalent_depth(const RegionSum<S>& sum, S normal_force) const noexcept {
+    if constexpr (std::same_as<Contacts, SinglePoint>) {
+      return sum.deepest;
+    } else {
+      return force_.depth(normal_force);
+    }
+  }
+
+  [[nodiscard]] Vec3<S> centre_of_mass() const noexcept {
+    if constexpr (std::same_as<Contacts, SinglePoint>) {
+      return tool_.centre_of_mass;
+    } else {
+      return tool_.centre_of_mass();
+    }
+  }
+
+  /// Carries friction over when regions merge or split: each region takes the share of every predecessor's tangential
+  /// force and elastic energy that its normal force is of all of that predecessor's successors; so the sum of the
+  /// forces is kept and no energy is added.
+  void inherit(const Pose<S>& X, const Sums& sums) noexcept {
+    using Skew = typename Friction::Skew;
+    const std::array<Stuck, max_regions> last = stuck_;
+    std::array<S, max_regions> share{};  // of the predecessors' total normal force
+    std::array<int, max_regions> heirs{};
+    for (std::size_t p = 0; p < max_regions; ++p) {
+      for (std::size_t k = 0; k < max_regions; ++k) {
+        if (!collector_.slot(k).inherits(p)) continue;
+        share[p] += sums[k].magnitude;
+        ++heirs[p];
+      }
+    }
+    for (std::size_t k = 0; k < max_regions; ++k) {
+      const RegionSlot& slot = collector_.slot(k);
+      if (!slot.active || (slot.merged == std::uint64_t(1) << k && heirs[k] == 1)) continue;  // lives on unchanged
+      Vec3<S> friction = Vec3<S>::Zero(), point_T = Vec3<S>::Zero(), tip = Vec3<S>::Zero(), normal = Vec3<S>::Zero();
+      S weight = S(0), strength = S(1), energy = S(0);
+      bool sliding = false;
+      for (std::size_t p = 0; p < max_regions; ++p) {
+        if (!slot.inherits(p) || !(share[p] > S(0))) continue;
+        const Anchor<S>& before = last[p].anchor;
+        const S fraction = sums[k].magnitude / share[p];
+        const S w = fraction * last[p].friction.norm() + std::numeric_limits<S>::epsilon() * sums[k].magnitude;
+        friction += fraction * last[p].friction;
+        point_T += w * before.point_T;
+        tip += w * before.tip;
+        normal += w * before.normal;
+        weight += w;
+        const S stretched = tangential<S>(before.tip - before.origin, before.normal).norm();
+        energy += fraction * before.slip.springs * Skew::energy(force_, last[p].depth, stretched);
+        strength = (std::max)(strength, before.slip.strength);
+        sliding = sliding || before.slip.sliding;
+      }
+      Anchor<S>& anchor = stuck_[k].anchor;
+      const S normal_force = sums[k].force.norm();
+      const S depth = force_.depth(normal_force);
+      if (!(weight > S(0))) {  // new, or from regions without force
+        anchor = Anchor<S>::begin(X, sums[k].centre(), sums[k].normal(), depth);
+        continue;
+      }
+      anchor.point_T = point_T / weight;
+      anchor.tip = tip / weight;
+      // A normal across the force keeps all of it where regions on both sides of an edge merge; slips turn it back.
+      const Vec3<S> along = unit_or<S>(friction, Vec3<S>::Zero());
+      const S held = friction.norm();
+      anchor.normal = unit_or<S>(tangential<S>(unit_or<S>(normal, sums[k].normal()), along), perpendicular<S>(along));
+      // A merged region's limit may be below the sum of its parts' (beta < 1): the excess wears off with travel.
+      const S limit = sliding ? friction_.sliding_limit(normal_force) : friction_.static_limit(normal_force);
+      if (limit > S(0)) strength = (std::max)(strength, (std::min)(held / limit, S(1) / (std::numeric_limits<S>::min)()));
+      anchor.slip = {sliding, strength};
+      const S stretch = anchor.slip.template hold<Skew>(force_, depth, held, energy);
+      anchor.slip.slid = stretch;
+      anchor.origin = anchor.tip + stretch * along + depth * anchor.normal;
+    }
+  }
+
+  Object object_;
+  Tool tool_;
+  Force force_;
+  PALPATE_NO_UNIQUE_ADDRESS Friction friction_;
+  PALPATE_NO_UNIQUE_ADDRESS Coupling coupling_;
+  PALPATE_NO_UNIQUE_ADDRESS typename Coupling::Result passed_on_{};
+  Collector<Contacts, S> collector_;
+  PALPATE_NO_UNIQUE_ADDRESS Present<LastPose, 0, is_rate_dependent> last_{};
+  PALPATE_NO_UNIQUE_ADDRESS Present<std::array<Stuck, max_regions>, 1, has_friction> stuck_{};
+  FixedVector<ContactState<S>, max_regions> contacts_;
+};
+
+}  // namespace palpate

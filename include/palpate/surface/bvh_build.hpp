@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  How a tree of boxes is built: surface area heuristic over bins. Set-up only.
+
+#include <palpate/core/vector.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace palpate::detail {
+
+template <Real S>
+struct BvhBox {
+  Vec3<S> low = Vec3<S>::Constant((std::numeric_limits<S>::max)());
+  Vec3<S> high = -low;
+  void add(const Vec3<S>& l, const Vec3<S>& h) noexcept {
+    low = low.cwiseMin(l);
+    high = high.cwiseMax(h);
+  }
+  [[nodiscard]] S half_area() const noexcept {
+    const Vec3<S> e = high - low;
+    return e.x() * e.y() + e.y() * e.z() + e.z() * e.x();
+  }
+};
+
+template <Real S>
+struct BvhNode {
+  Vec3<S> low, high;
+  std::uint32_t first;  // inner: the left child, the right one follows; leaf: place of the first triangle
+  std::uint32_t count;  // 0: inner
+  [[nodiscard]] S distance2(const Vec3<S>& x) const noexcept {
+    return (low - x).cwiseMax(x - high).cwiseMax(S(0)).squaredNorm();
+  }
+};
+
+inline constexpr std::uint32_t bvh_leaf_size = 4;
+
+/// Splits along the longest axis of the centres, where area times count is least over 16 bins [wald2007].
+/// Siblings lie together, children after their parent; depth is at most 62.
+template <Real S>
+class BvhBuild {
+ public:
+  std::vector<BvhNode<S>> nodes;     // the root first
+  std::vector<std::uint32_t> order;  // items by place in the leaves
+
+  explicit BvhBuild(std::span<const BvhBox<S>> boxes) {
+    std::vector<Item> items;
+    items.reserve(boxes.size());
+    for (const Box& box : boxes)
+      items.push_back({box.low, box.high, static_cast<std::uint32_t>(items.size())});
+    nodes.reserve(items.size());
+    nodes.emplace_back();
+    split(items, 0, 0, static_cast<std::uint32_t>(items.size()), 0);
+    order.reserve(items.size());
+    for (const Item& item : items) order.push_back(item.triangle);
+  }
+
+ private:
+  using Box = BvhBox<S>;
+  static constexpr int sah_depth = 31;  // below it the median is taken: 31 more levels hold 1e9 items
+  static constexpr int bins = 16;
+
+  struct Item {
+    Vec3<S> low, high;
+    std::uint32_t triangle;
+    [[nodiscard]] S centre(int axis) const noexcept { return low[axis] + high[axis]; }  // twice
+  };
+
+  void split(std::vector<Item>& items, std::size_t index, std::uint32_t begin, std::uint32_t end, int depth) {
+    Box box, centres;
+    for (std::uint32_t i = begin; i < end; ++i) {
+      box.add(items[i].low, items[i].high);
+      const Vec3<S> c = items[i].low + items[i].high;
+      centres.add(c, c);
+    }
+    nodes[index] = {box.low, box.high, begin, end - begin};
+    if (end - begin <= bvh_leaf_size) return;
+    int axis = 0;
+    (centres.high - centres.low).maxCoeff(&axis);
+    const auto from = items.begin() + begin, to = items.begin() + end;
+    auto middle = from;
+    if (depth < sah_depth) middle = divide(from, to, axis, centres.low[axis], centres.high[axis]);
+    if (middle == from || middle == to) {
+      middle = from + (end - begin) / 2;
+      std::nth_element(from, middle, to, [axis](const Item& l, const Item& r) {
+        const S x = l.centre(axis), y = r.centre(axis);
+        return x < y || (x == y && l.triangle < r.triangle);
+      });
+    }
+    const auto cut = begin + static_cast<std::uint32_t>(middle - from);
+    const std::size_t left = nodes.size();
+    nodes[index].first = static_cast<std::uint32_t>(left);
+    nodes[index].count = 0;
+    nodes.emplace_back();
+    nodes.emplace_back();
+    split(items, left, begin, cut, depth + 1);
+    split(items, left + 1, cut, end, depth + 1);
+  }
+
+  // Cut with the least sum of area times count; `from` where all centres fall into one bin.
+  template <class Iterator>
+  [[nodiscard]] static Iterator divide(Iterator from, Iterator to, int axis, S low, S high) {
+    const S scale = S(bins) / (high - low);
+    if (!(high > low) || !is_finite(scale)) return from;
+    const auto bin = [&](const Item& item) {
+      return (std::min)(bins - 1, static_cast<int>((item.centre(axis) - low) * scale));
+    };
+    std::array<Box, bins> box;
+    std::array<std::size_t, bins> count{};
+    for (auto i = from; i != to; ++i) {
+      const auto b = static_cast<std::size_t>(bin(*i));
+      box[b].add(i->low, i->high);
+      ++count[b];
+    }
+    std::array<S, bins> above{};  // cost of the bins from k on
+    Box grown;
+    std::size_t held = 0;
+    for (std::size_t k = bins; k-- > 1;) {
+      grown.add(box[k].low, box[k].high);
+      held += count[k];
+      above[k] = held > 0 ? grown.half_area() * static_cast<S>(held) : S(0);
+    }
+    grown = Box{};
+    held = 0;
+    int best = 0;
+    S least = (std::numeric_limits<S>::max)();
+    for (std::size_t k = 0; k + 1 < bins; ++k) {
+      grown.add(box[k].low, box[k].high);
+      held += count[k];
+      const S cost = (held > 0 ? grown.half_area() * static_cast<S>(held) : S(0)) + above[k + 1];
+      if (cost < least && held > 0) {
+        least = cost;
+        best = static_cast<int>(k);
+      }
+    }
+    return std::partition(from, to, [&](const Item& item) { return bin(item) <= best; });
+  }
+};
+
+}  // namespace palpate::detail

@@ -1,0 +1,121 @@
+# Tests of how the library builds: each header alone, all of it in two objects, flags of the host, policies that must
+# be refused, and the three ways of using it from another project. Label: build.
+
+get_property(tests_of_code DIRECTORY PROPERTY TESTS)
+
+file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/include
+  ${PROJECT_SOURCE_DIR}/include/palpate/*.hpp)
+list(SORT headers)
+set(include_all "")
+foreach(header IN LISTS headers)
+  string(APPEND include_all "#include <${header}>\n")
+endforeach()
+set(generated ${CMAKE_CURRENT_BINARY_DIR}/generated)
+file(CONFIGURE OUTPUT ${generated}/all_headers.hpp CONTENT "#pragma once\n${include_all}" @ONLY)
+
+# Each header alone, in a file of its own. Force laws stay free of Eigen, which is most of a user's compile time.
+set(sources "")
+foreach(header IN LISTS headers)
+  string(REGEX REPLACE "[/.]" "_" name ${header})
+  set(text "#include <${header}>\n")
+  if(header MATCHES "^palpate/force/")
+    string(APPEND text "#ifdef EIGEN_WORLD_VERSION\n#error force laws do not include Eigen\n#endif\n")
+  endif()
+  file(CONFIGURE OUTPUT ${generated}/${name}.cpp CONTENT "${text}" @ONLY)
+  list(APPEND sources ${generated}/${name}.cpp)
+endforeach()
+# One compiler is enough: an include that is missing is missing for all, and this is a third of the build's time.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  add_library(palpate_test_headers OBJECT ${sources})
+  palpate_own_target(palpate_test_headers)
+  target_compile_options(palpate_test_headers PRIVATE -O0)
+endif()
+
+# Two objects of one program.
+add_executable(palpate_test_odr odr/first.cpp odr/second.cpp)
+palpate_own_target(palpate_test_odr)
+target_include_directories(palpate_test_odr PRIVATE ${generated})
+add_test(NAME odr COMMAND palpate_test_odr)
+
+# An engine: no exceptions, no RTTI, fast-math, and a palpate_config.hpp of its own.
+add_executable(palpate_test_host host/main.cpp)
+palpate_own_target(palpate_test_host)
+target_include_directories(palpate_test_host PRIVATE host/config ${generated})
+target_compile_options(palpate_test_host PRIVATE -fno-exceptions -fno-rtti -ffast-math)
+add_test(NAME host COMMAND palpate_test_host)
+
+# Without exceptions and without a handler: the message on stderr, then abort().
+add_executable(palpate_test_host_default host/default_handler.cpp)
+palpate_own_target(palpate_test_host_default)
+target_compile_options(palpate_test_host_default PRIVATE -fno-exceptions -fno-rtti)
+add_test(NAME host_default COMMAND palpate_test_host_default)
+set_tests_properties(host_default PROPERTIES
+  PASS_REGULAR_EXPRESSION "palpate: Spring: stiffness \\[N/m\\] must be > 0, got -3")
+
+# What crosses the interface has the same size and alignment whatever the host's vector flags.
+include(CheckCXXCompilerFlag)
+check_cxx_compiler_flag(-mavx512f PALPATE_HAS_AVX_FLAGS)
+if(PALPATE_HAS_AVX_FLAGS)
+  add_library(palpate_test_sizes_plain OBJECT sizes/sizes.cpp)
+  target_compile_definitions(palpate_test_sizes_plain PRIVATE PALPATE_TEST_SIZES=sizes_plain)
+  add_library(palpate_test_sizes_avx OBJECT sizes/sizes.cpp)
+  target_compile_definitions(palpate_test_sizes_avx PRIVATE PALPATE_TEST_SIZES=sizes_avx)
+  target_compile_options(palpate_test_sizes_avx PRIVATE -mavx)
+  add_library(palpate_test_sizes_avx512 OBJECT sizes/sizes.cpp)
+  target_compile_definitions(palpate_test_sizes_avx512 PRIVATE PALPATE_TEST_SIZES=sizes_avx512)
+  target_compile_options(palpate_test_sizes_avx512 PRIVATE -mavx512f -mfma)
+  add_executable(palpate_test_sizes sizes/main.cpp)
+  foreach(target palpate_test_sizes_plain palpate_test_sizes_avx palpate_test_sizes_avx512 palpate_test_sizes)
+    palpate_own_target(${target})
+  endforeach()
+  target_link_libraries(palpate_test_sizes
+    PRIVATE palpate_test_sizes_plain palpate_test_sizes_avx palpate_test_sizes_avx512)
+  add_test(NAME sizes COMMAND palpate_test_sizes)
+endif()
+
+# Policies that must be refused, with a message that names what is missing.
+get_target_property(eigen_include Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+set(plain_flags -std=c++20 -I${PROJECT_SOURCE_DIR}/include -isystem ${eigen_include})
+if(CMAKE_CXX_COMPILER_ID MATCHES "^(GNU|Clang)$")
+  file(GLOB sources CONFIGURE_DEPENDS compile/*.cpp)
+  foreach(source IN LISTS sources)
+    get_filename_component(name ${source} NAME_WE)
+    add_test(NAME compile_${name} COMMAND ${CMAKE_COMMAND} -DCOMPILER=${CMAKE_CXX_COMPILER}
+      -DID=${CMAKE_CXX_COMPILER_ID} "-DFLAGS=${plain_flags}" -DSOURCE=${source}
+      -P ${CMAKE_CURRENT_SOURCE_DIR}/compile/check.cmake)
+  endforeach()
+endif()
+
+# The three ways of using palpate from another project.
+set(consumer ${CMAKE_CURRENT_BINARY_DIR}/consumer)
+add_test(NAME consumer_plain COMMAND ${CMAKE_CXX_COMPILER} ${plain_flags}
+  ${CMAKE_CURRENT_SOURCE_DIR}/consumer/main.cpp -o ${consumer}_plain)
+add_test(NAME consumer_plain_run COMMAND ${consumer}_plain)
+set_tests_properties(consumer_plain PROPERTIES FIXTURES_SETUP consumer_plain)
+set_tests_properties(consumer_plain_run PROPERTIES FIXTURES_REQUIRED consumer_plain)
+
+function(palpate_consumer_test way)
+  add_test(NAME consumer_${way} COMMAND ${CMAKE_CTEST_COMMAND}
+    --build-and-test ${CMAKE_CURRENT_SOURCE_DIR}/consumer/${way} ${consumer}/${way}
+    --build-generator ${CMAKE_GENERATOR}
+    --build-options -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} -DCMAKE_BUILD_TYPE=Release ${ARGN}
+    --test-command consumer)
+endfunction()
+palpate_consumer_test(add_subdirectory -DPALPATE_SOURCE_DIR=${PROJECT_SOURCE_DIR})
+if(PALPATE_INSTALL)
+  add_test(NAME install COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --prefix ${consumer}/prefix)
+  palpate_consumer_test(find_package -DCMAKE_PREFIX_PATH=${consumer}/prefix -DPALPATE_VERSION=${PROJECT_VERSION})
+  set_tests_properties(install PROPERTIES FIXTURES_SETUP install)
+  set_tests_properties(consumer_find_package PROPERTIES FIXTURES_REQUIRED install)
+endif()
+
+# The rules of the house that a script can check, and the script itself.
+if(UNIX)
+  add_test(NAME house COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/check_house.sh ${PROJECT_SOURCE_DIR})
+  add_test(NAME readme COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/check_readme.sh ${PROJECT_SOURCE_DIR})
+  add_test(NAME house_refuses COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/check_house_test.sh ${CMAKE_CURRENT_BINARY_DIR}/house)
+endif()
+
+get_property(tests DIRECTORY PROPERTY TESTS)
+list(REMOVE_ITEM tests ${tests_of_code})
+set_tests_properties(${tests} PROPERTIES LABELS build)

@@ -1,0 +1,25 @@
+# cmake -DCOMPILER=<c++> -DID=<GNU|Clang> -DFLAGS=<list> -DSOURCE=<file> -P check.cmake
+# Compiles SOURCE as it is, which must work, and with PALPATE_MUST_FAIL, which must not; see README.md.
+set(ENV{LC_ALL} C)
+execute_process(COMMAND ${COMPILER} ${FLAGS} -fsyntax-only ${SOURCE} RESULT_VARIABLE failed ERROR_VARIABLE message)
+if(failed)
+  message(FATAL_ERROR "The twin, which is right, does not compile:\n${message}")
+endif()
+execute_process(COMMAND ${COMPILER} ${FLAGS} -DPALPATE_MUST_FAIL -fsyntax-only ${SOURCE}
+  RESULT_VARIABLE failed ERROR_VARIABLE message)
+if(NOT failed)
+  message(FATAL_ERROR "It compiles, and must not.")
+endif()
+
+string(TOLOWER "${ID}" id)
+string(REPLACE "gnu" "gcc" id ${id})
+file(STRINGS ${SOURCE} lines REGEX "^// expect(-${id})?: ")
+if(NOT lines)
+  message(FATAL_ERROR "No line '// expect: ' says what the message must name.")
+endif()
+foreach(line IN LISTS lines)
+  string(REGEX REPLACE "^// expect[a-z-]*: " "" expected "${line}")
+  if(NOT message MATCHES "${expected}")
+    message(FATAL_ERROR "The compiler's message does not name '${expected}':\n${message}")
+  endif()
+endforeach()

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// expect: HasActive
+// expect: F::active
+#include <palpate/friction/concept.hpp>
+
+struct Rough {
+  using Scalar = double;
+#ifndef PALPATE_MUST_FAIL
+  static constexpr bool active = true;
+#endif
+  double static_limit(double normal_force) const noexcept { return normal_force; }
+  double sliding_limit(double normal_force) const noexcept { return normal_force / 2; }
+  double max_coefficient() const noexcept { return 1; }
+};
+
+template <palpate::FrictionLaw Law>
+struct Solver {
+  Law law;
+};
+
+int main() { return Solver<Rough>{}.law.static_limit(0) > 0; }

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// The force law suite on every shipped law, float and double.
+
+#include "contract/force_law.hpp"
+
+#include <palpate/force/damped.hpp>
+#include <palpate/force/duffing.hpp>
+#include <palpate/force/linear.hpp>
+#include <palpate/force/power_law.hpp>
+#include <palpate/force/saturated.hpp>
+#include <palpate/force/tabulated.hpp>
+
+#include <array>
+
+using namespace palpate;
+
+namespace {
+
+// Parameters of c [N/m^p] in other units: F' = F / force, D' = D / length.
+template <class T>
+T convert(T c, T length, T force, int p) {
+  for (int i = 0; i < p; ++i) c *= length;
+  return c / force;
+}
+
+template <int Sign>
+struct DuffingExample {
+  static constexpr double depth = 0.01;
+  static constexpr bool exact_units = true;
+  template <class S>
+  static std::vector<S> kinks() {
+    return {};
+  }
+  template <class S, class T>
+  static DuffingForce<T> make(T length, T force) {
+    const T c1 = S(40.7), c3 = Sign * S(3.1e5);
+    return DuffingForce<T>({.c1 = convert(c1, length, force, 1), .c3 = convert(c3, length, force, 3)});
+  }
+};
+
+struct PureCubicExample : DuffingExample<1> {
+  template <class S, class T>
+  static DuffingForce<T> make(T length, T force) {
+    return DuffingForce<T>({.c1 = T(0), .c3 = convert(T(S(3.1e5)), length, force, 3)});
+  }
+};
+
+struct LinearExample : DuffingExample<1> {
+  template <class S, class T>
+  static LinearForce<T> make(T length, T force) {
+    return LinearForce<T>({.k = convert(T(S(512.3)), length, force, 1)});
+  }
+};
+
+template <int TwiceP>
+struct PowerLawExample : DuffingExample<1> {
+  static constexpr bool exact_units = false;  // pow() promises nothing about powers of 2
+  template <class S, class T>
+  static PowerLawForce<T> make(T length, T force) {
+    T k = S(9.7e4);
+    for (int i = 0; i < TwiceP; ++i) k *= std::sqrt(length);
+    return PowerLawForce<T>({.k = k / force, .p = T(TwiceP) / T(2)});
+  }
+};
+
+struct TabulatedExample {
+  static constexpr double depth = 0.014;
+  static constexpr bool exact_units = true;
+  static constexpr double d[] = {0, 0.001, 0.0025, 0.003, 0.006, 0.0095, 0.012};
+  static constexpr double f[] = {0, 0.11, 0.2, 0.5, 0.51, 2.75, 3.5};
+  template <class S>
+  static std::vector<S> kinks() {
+    return {S(d[1]), S(d[2]), S(d[3]), S(d[4]), S(d[5]), S(d[6])};
+  }
+  template <class S, class T>
+  static TabulatedForce<T, 16> make(T length, T force) {
+    std::array<typename TabulatedForce<T, 16>::Sample, 7> samples;
+    for (std::size_t i = 0; i < 7; ++i) samples[i] = {T(S(d[i])) / length, T(S(f[i])) / force};
+    return TabulatedForce<T, 16>(samples);
+  }
+};
+
+template <class Inner>
+struct SaturatedExample {
+  static constexpr double depth = 0.02;
+  static constexpr bool exact_units = Inner::exact_units;
+  template <class S>
+  static std::vector<S> kinks() {
+    const auto inner = Inner::template make<S>(S(1), S(1));
+    return {inner.depth(S(0.75) * S(0.3125)), make<S>(S(1), S(1)).max_depth()};
+  }
+  template <class S, class T>
+  static auto make(T length, T force) {
+    return SaturatedForce(Inner::template make<S>(length, force),
+                          {.limit = T(0.3125) / force, .knee = T(0.75)});
+  }
+};
+
+template <class Inner, class Form>
+struct DampedExample : Inner {
+  template <class S, class T>
+  static auto make(T length, T force) {
+    using Law = decltype(Inner::template make<S>(length, force));
+    return DampedForce<Law, Form>(Inner::template make<S>(length, force), {.damping = T(0.5)});
+  }
+};
+
+template <class Example_, class Scalar_>
+struct Case {
+  using Example = Example_;
+  using Scalar = Scalar_;
+};
+
+TEST_CASE_TEMPLATE_DEFINE("force law", C, force_law) {
+  test::ForceLawSuite<typename C::Example, typename C::Scalar>{}.run();
+}
+
+#define PALPATE_FORCE_LAW_SUITE(...) \
+  TEST_CASE_TEMPLATE_INVOKE(force_law, Case<__VA_ARGS__, float>, Case<__VA_ARGS__, double>)
+
+PALPATE_FORCE_LAW_SUITE(DuffingExample<1>);
+PALPATE_FORCE_LAW_SUITE(DuffingExample<0>);
+PALPATE_FORCE_LAW_SUITE(DuffingExample<-1>);
+PALPATE_FORCE_LAW_SUITE(PureCubicExample);
+PALPATE_FORCE_LAW_SUITE(LinearExample);
+PALPATE_FORCE_LAW_SUITE(PowerLawExample<2>);
+PALPATE_FORCE_LAW_SUITE(PowerLawExample<3>);
+PALPATE_FORCE_LAW_SUITE(PowerLawExample<4>);
+PALPATE_FORCE_LAW_SUITE(TabulatedExample);
+PALPATE_FORCE_LAW_SUITE(SaturatedExample<DuffingExample<1>>);
+PALPATE_FORCE_LAW_SUITE(SaturatedExample<PowerLawExample<3>>);
+PALPATE_FORCE_LAW_SUITE(SaturatedExample<TabulatedExample>);
+PALPATE_FORCE_LAW_SUITE(SaturatedExample<DuffingExample<-1>>);  // 0.18 N at most: never reaches the limit
+PALPATE_FORCE_LAW_SUITE(DampedExample<DuffingExample<1>, HuntCrossley>);
+PALPATE_FORCE_LAW_SUITE(DampedExample<SaturatedExample<DuffingExample<1>>, Viscous>);
+
+}  // namespace

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  What every interpolation must keep (interpolation/concept.hpp), run on each policy over several bodies.
+
+#include "support/check.hpp"
+#include "support/paths.hpp"
+
+#include <palpate/interpolation/concept.hpp>
+
+#include <random>
+#include <vector>
+
+namespace palpate::test {
+
+/// The field of one load at all slots.
+template <Interpolation I>
+[[nodiscard]] std::vector<Vec3<typename I::Scalar>> field_of(const I& interpolation,
+                                                             const typename I::Load& load) {
+  using S = typename I::Scalar;
+  const auto& partition = interpolation.partition();
+  std::vector<Vec3<S>> field(partition.size());
+  for (std::size_t f = 0; f < partition.faces().size(); ++f) {
+    const Face<S>& face = partition.faces()[f];
+    for (std::size_t first = face.first; first < face.first + face.count; first += block_size) {
+      Block<S> u[3] = {};
+      interpolation.add(load, f, first, nullptr, u[0].value, u[1].value, u[2].value);
+      for (std::size_t i = 0; i < block_size && first + i < face.first + face.count; ++i)
+        field[first + i] = Vec3<S>(u[0][i], u[1][i], u[2][i]);
+    }
+  }
+  return field;
+}
+
+template <Interpolation I>
+[[nodiscard]] std::vector<Vec3<typename I::Scalar>> field_of(
+    const I& interpolation, const std::vector<Vec3<typename I::Scalar>>& corners,
+    const ContactDisplacement<typename I::Scalar>& contact) {
+  typename I::Load load;
+  interpolation.prepare(corners, contact, load);
+  return field_of(interpolation, load);
+}
+
+/// The slot of mesh vertex `vertex`.
+template <Real S>
+[[nodiscard]] std::size_t slot_of(const FacePartition<S>& partition, std::uint32_t vertex) {
+  std::size_t slot = 0;
+  while (partition.order()[slot] != vertex) ++slot;
+  return slot;
+}
+
+/// `Make` is a callable FacePartition<S> -> interpolation. `tolerance` in units of the largest displacement.
+template <class Body, class Make>
+void check_interpolation(const Body& body, const Make& make, long double tolerance) {
+  using S = typename Body::Scalar;
+  MeshData<S> mesh = body.mesh(400);
+  const auto points = extremal_points(body);
+  // Corners and contact are vertices of their own, so that the field there can be read.
+  const auto at_corner = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const auto& point : points) mesh.vertices.push_back(point.position);
+  const Vec3<S> place =
+      body.closest(body.lower() + Vec3<S>(S(0.8), S(0.95), S(0.7)).cwiseProduct(body.upper() - body.lower()))
+          .position;
+  const auto at_contact = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.push_back(place);
+  const auto interpolation = make(make_partition(body, mesh));
+  using I = std::remove_cvref_t<decltype(interpolation)>;
+  const auto& partition = interpolation.partition();
+
+  std::mt19937_64 random(20050608);
+  INFO("seed 20050608");
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto vector = [&](double size) {
+    return Vec3<S>(S(size * unit(random)), S(size * unit(random)), S(size * unit(random)));
+  };
+  std::vector<Vec3<S>> corners(points.size()), still(points.size(), Vec3<S>::Zero());
+  for (auto& u : corners) u = vector(1e-3);
+  ContactDisplacement<S> contact{
+      .place = place, .normal = shading_normal(body, place), .displacement = vector(4e-3)};
+  const S largest = S(4e-3);
+  const auto field = field_of(interpolation, corners, contact);
+
+  // The corners and the contact keep their own displacements.
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Vec3<S> u = field[slot_of(partition, at_corner + static_cast<std::uint32_t>(i))];
+    INFO("corner ", i);
+    CHECK((u - corners[i]).norm() <= tolerance * largest);
+  }
+  CHECK((field[slot_of(partition, at_contact)] - contact.displacement).norm() <= tolerance * largest);
+
+  // Zero load, and no load at all: exactly zero everywhere, and said so.
+  typename I::Load nothing, zero;
+  ContactDisplacement<S> at_rest = contact;
+  at_rest.displacement.setZero();
+  interpolation.prepare(still, at_rest, zero);
+  for (const auto* load : {&nothing, &zero}) {
+    for (std::size_t f = 0; f < partition.faces().size(); ++f) CHECK(!interpolation.moves(*load, f));
+    for (const Vec3<S>& u : field_of(interpolation, *load)) CHECK(u.isZero(S(0)));
+  }
+
+  // Input that makes no sense moves nothing; so does a list of the wrong length.
+  const S nan = std::numeric_limits<S>::quiet_NaN(), infinity = std::numeric_limits<S>::infinity();
+  for (const S bad : {nan, infinity, -infinity, S(1e30)}) {
+    for (int entry = 0; entry < 9; ++entry) {
+      ContactDisplacement<S> spoilt = contact;
+      std::vector<Vec3<S>> u = corners;
+      (entry < 3 ? spoilt.place : entry < 6 ? spoilt.displacement : u[0])[entry % 3] = bad;
+      typename I::Load load;
+      interpolation.prepare(u, spoilt, load);
+      CHECK(!interpolation.moves(load, 0));
+    }
+  }
+  typename I::Load short_list;
+  interpolation.prepare(std::span<const Vec3<S>>(corners).first(corners.size() - 1), contact, short_list);
+  CHECK(!interpolation.moves(short_list, 0));
+
+  // The same load is the same field, and a changed contact is seen in its own face.
+  typename I::Load one, two;
+  interpolation.prepare(corners, contact, one);
+  for (std::size_t f = 0; f < partition.faces().size(); ++f) CHECK(interpolation.same(one, one, f));
+  ContactDisplacement<S> other = contact;
+  other.displacement *= S(1.5);
+  interpolation.prepare(corners, other, two);
+  CHECK(!interpolation.same(one, two, partition.locate(place).face));
+  // Where `same` says so, it is.
+  const auto field_two = field_of(interpolation, two);
+  for (std::size_t f = 0; f < partition.faces().size(); ++f) {
+    if (!interpolation.same(one, two, f)) continue;
+    const Face<S>& face = partition.faces()[f];
+    for (std::size_t slot = face.first; slot < face.first + face.count; ++slot)
+      CHECK(field[slot] == field_two[slot]);
+  }
+
+  // Scaling the load by a power of 2 scales the field, to the bit.
+  auto doubled = corners;
+  for (auto& u : doubled) u *= S(2);
+  other.displacement = S(2) * contact.displacement;
+  const auto field_doubled = field_of(interpolation, doubled, other);
+  for (std::size_t slot = 0; slot < field.size(); ++slot)
+    CHECK((field_doubled[slot] - S(2) * field[slot]).isZero(S(0)));
+
+  // Rotation equivariance: body, mesh, normals and load turned together turn the field.
+  const Mat3<S> turn = rotation_about<S>(Vec3<S>(S(2), S(-1), S(2)) / S(3), S(0.7));
+  MeshData<S> turned = mesh;
+  std::vector<Vec3<S>> normals;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    turned.vertices[i] = turn * mesh.vertices[i];
+    normals.push_back(turn * shading_normal(body, mesh.vertices[i]));
+  }
+  auto turned_points = points;
+  for (auto& point : turned_points) point = {turn * point.position, turn * point.normal};
+  const auto turned_interpolation = make(FacePartition<S>(turned, normals, turned_points));
+  auto turned_corners = corners;
+  for (auto& u : turned_corners) u = turn * u;
+  ContactDisplacement<S> turned_contact = contact;
+  turned_contact.place = turn * contact.place;
+  turned_contact.normal = turn * contact.normal;
+  turned_contact.displacement = turn * contact.displacement;
+  const auto turned_field = field_of(turned_interpolation, turned_corners, turned_contact);
+  long double worst = 0;
+  for (std::uint32_t vertex = 0; vertex < mesh.vertices.size(); ++vertex) {
+    const Vec3<S> u = field[slot_of(partition, vertex)],
+                  v = turned_field[slot_of(turned_interpolation.partition(), vertex)];
+    worst = std::max(worst, static_cast<long double>((turn * u - v).norm() / largest));
+  }
+  // The fields' slope with respect to places is up to 1/fade, so their rounding counts ten times.
+  CHECK(worst <= 20 * tolerance);
+}
+
+}  // namespace palpate::test

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "contract/interpolation.hpp"
+
+#include <palpate/interpolation/linear.hpp>
+#include <palpate/interpolation/phong.hpp>
+#include <palpate/interpolation/smooth.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace palpate;
+using palpate::test::check_interpolation;
+using palpate::test::ulps;
+
+namespace {
+
+template <template <class> class I, class S>
+void check_on_all_bodies(long double tolerance) {
+  const auto make = [](const FacePartition<S>& partition) { return I<S>(partition); };
+  SUBCASE("sphere") { check_interpolation(Sphere<S>({.radius = S(0.03)}), make, tolerance); }
+  SUBCASE("ellipsoid") {
+    check_interpolation(Ellipsoid<S>({.axes = {S(0.03), S(0.02), S(0.025)}}), make, tolerance);
+  }
+  SUBCASE("box") { check_interpolation(Box<S>(typename Box<S>::Params{}), make, tolerance); }
+  SUBCASE("cylinder") { check_interpolation(Cylinder<S>(typename Cylinder<S>::Params{}), make, tolerance); }
+  SUBCASE("superellipsoid") {
+    check_interpolation(Superellipsoid<S>(typename Superellipsoid<S>::Params{}), make, tolerance);
+  }
+}
+
+}  // namespace
+
+// Weights are sums of at most nine products; 40 ulp of the largest displacement.
+TEST_CASE_TEMPLATE("interpolation contract: linear", S, float, double) {
+  check_on_all_bodies<LinearInterpolation, S>(ulps<S>(40));
+}
+// A direction from an angle and back again: sine, cosine and a root on top of that.
+TEST_CASE_TEMPLATE("interpolation contract: Phong", S, float, double) {
+  check_on_all_bodies<PhongInterpolation, S>(ulps<S>(100));
+}
+// Coefficients of the spline cancel: they are up to 20 times the displacements, and there are up to 18 of them.
+TEST_CASE_TEMPLATE("interpolation contract: smooth", S, float, double) {
+  check_on_all_bodies<SmoothInterpolation, S>(ulps<S>(2000));
+}

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include <palpate/response/boundary_element.hpp>
+
+#include "support/check.hpp"
+#include "support/response_meshes.hpp"
+
+namespace {
+using namespace palpate;
+using V = Vec3<double>;
+using Eigen::VectorXd;
+
+// Held below y = low; a small solve mesh.
+SolveMesh solve_mesh(const MeshData<double>& mesh, double low, double vertices) {
+  std::vector<std::uint8_t> held;
+  for (const auto& t : mesh.triangles) held.push_back((mesh.vertices[t[0]].y() + mesh.vertices[t[1]].y() + mesh.vertices[t[2]].y()) / 3 <= low);
+  return make_solve_mesh(SmoothSurface(mesh), held, {.vertices = vertices, .rim_ratio = 0.6});
+}
+template <class F>
+VectorXd at_vertices(const SolveMesh& m, const F& f) {
+  VectorXd out(3 * Eigen::Index(m.vertices.size()));
+  for (std::size_t v = 0; v < m.vertices.size(); ++v) out.segment<3>(3 * Eigen::Index(v)) = f(m.vertices[v]);
+  return out;
+}
+template <class F>
+VectorXd at_nodes(const SolveMesh& m, const F& f) {
+  VectorXd out(3 * Eigen::Index(m.nodes.size()));
+  for (std::size_t k = 0; k < m.nodes.size(); ++k) out.segment<3>(3 * Eigen::Index(k)) = f(m.nodes[k].normal);
+  return out;
+}
+}  // namespace
+
+TEST_CASE("box: rigid modes and uniform strain meet the discrete equation, nu = 0, 0.3, 0.49, 1/2") {
+  const SolveMesh m = solve_mesh(test::box_mesh(V(1, 1.2, 0.8), 5), 1e-9, 120);
+  for (double nu : {0.0, 0.3, 0.49, 0.5}) {
+    INFO("nu ", nu);
+    const BoundaryElements bem(m, nu, 1);
+    const VectorXd shift = at_vertices(m, [](const V&) { return V(1, 2, 3); });
+    CHECK_ABSOLUTE((bem.H() * shift).norm() / (bem.H().norm() * shift.norm()), 0.0, 1e-15);  // by construction
+    const VectorXd turn = at_vertices(m, [](const V& x) { return V(V(1, -1, 2).cross(x)); });
+    CHECK_ABSOLUTE((bem.H() * turn).norm() / turn.norm(), 0.0, 1e-4);  // flat triangles: quadrature only
+    // Volume kept, so that the stress is 2 mu times the strain at any nu; at nu < 1/2 a dilatation too.
+    Mat3<double> strain;
+    strain << 1, 0.3, 0, 0.3, -0.6, 0.2, 0, 0.2, -0.4;
+    Mat3<double> stress = 2 * strain;
+    if (nu < 0.5) {
+      strain += 0.5 * Mat3<double>::Identity();
+      stress = 2 * strain + 2 * nu / (1 - 2 * nu) * strain.trace() * Mat3<double>::Identity();
+    }
+    const VectorXd u = at_vertices(m, [&](const V& x) { return V(strain * x); }), t = at_nodes(m, [&](const V& n) { return V(stress * n); });
+    CHECK_ABSOLUTE((bem.H() * u - bem.G() * t).norm() / (bem.G() * t).norm(), 0.0, 1e-3);  // quadrature only
+  }
+}
+
+TEST_CASE("bar held at its end and pulled, nu = 0: the exact linear displacement") {
+  const SolveMesh m = solve_mesh(test::box_mesh(V(1, 3, 1), 6), 1e-9, 160);
+  BoundaryElements bem(m, 0.0, 1);
+  // mu = 1 and nu = 0: E = 2; traction 2 at the top stretches by 1.
+  const VectorXd t = at_nodes(m, [](const V& n) { return V(0, n.y() > 0.5 ? 2 : 0, 0); });
+  detail::Matrix u = bem.G() * t;
+  bem.factorise();
+  bem.solve(u);
+  for (std::size_t v = 0; v < m.vertices.size(); ++v) {
+    const V exact = m.fixed_vertex[v] ? V(0, -2, 0) : V(0, m.vertices[v].y(), 0);  // at held vertices: the traction
+    CHECK_ABSOLUTE((u.block<3, 1>(3 * Eigen::Index(v), 0) - exact).norm(), 0.0, m.fixed_vertex[v] ? 0.05 : 5e-3);  // quadrature; traction is rougher
+  }
+}
+
+TEST_CASE("sphere under uniform pressure: second order in the edge length") {
+  const MeshData<double> fine = test::ellipsoid_mesh(V(1, 1, 1), 10);
+  const double nu = 0.3, pressure = 1, exact = -pressure * (1 - 2 * nu) / (2 * (1 + nu));
+  double error[2], edge[2];
+  for (int k = 0; k < 2; ++k) {
+    const SolveMesh m = solve_mesh(fine, -0.8, k == 0 ? 60 : 240);
+    const BoundaryElements bem(m, nu, 1);
+    detail::Matrix modes(3 * Eigen::Index(m.vertices.size()), 6);
+    for (int i = 0; i < 3; ++i) {
+      modes.col(i) = at_vertices(m, [i](const V&) { return V(V::Unit(i)); }).normalized();
+      modes.col(3 + i) = at_vertices(m, [i](const V& x) { return V(V::Unit(i).cross(x)); }).normalized();
+    }
+    const VectorXd t = at_nodes(m, [&](const V& n) { return V(-pressure * n); });
+    const VectorXd u = (bem.H() + modes * modes.transpose()).partialPivLu().solve(bem.G() * t);
+    double sum = 0;
+    V mean = V::Zero();
+    for (std::size_t v = 0; v < m.vertices.size(); ++v) mean += (u.segment<3>(3 * Eigen::Index(v)) - exact * m.vertices[v]) / double(m.vertices.size());
+    for (std::size_t v = 0; v < m.vertices.size(); ++v) sum += std::pow((u.segment<3>(3 * Eigen::Index(v)) - mean).dot(m.vertices[v]) / exact - 1, 2);
+    error[k] = std::sqrt(sum / double(m.vertices.size()));
+    edge[k] = m.length;
+  }
+  const double order = std::log(error[0] / error[1]) / std::log(edge[0] / edge[1]);
+  MESSAGE("relative error ", error[0], " to ", error[1], ", order ", order);
+  CHECK(error[1] < 0.02);
+  CHECK(order > 1.3);  // second order on average; two irregular meshes scatter
+}
+
+TEST_CASE("set-up refuses an open mesh, an empty fixed region, nu out of range") {
+  MeshData<double> open = test::box_mesh(V(1, 1, 1), 2);
+  open.triangles.pop_back();
+  CHECK_THROWS_AS(SmoothSurface{open}, SetupError);
+  const SmoothSurface closed(test::box_mesh(V(1, 1, 1), 2));
+  CHECK_THROWS_AS((void)make_solve_mesh(closed, std::vector<std::uint8_t>(closed.mesh().triangles.size(), 0)), SetupError);
+  CHECK_THROWS_AS(BoundaryElements(solve_mesh(test::box_mesh(V(1, 1, 1), 4), 1e-9, 60), 0.51, 1), SetupError);
+}

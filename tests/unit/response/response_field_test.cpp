@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include <palpate/response/response_contact.hpp>
+
+#include "support/check.hpp"
+#include "support/response_meshes.hpp"
+
+namespace {
+using namespace palpate;
+using V = Vec3<double>;
+
+ResponseField ellipsoid(double nu, double vertices) {
+  return ResponseField(test::ellipsoid_mesh(V(0.06, 0.04, 0.04), 14), [](const V& p) { return p.y() <= -0.036; },
+                       {.E = 1.5e6, .nu = nu, .mesh = {.vertices = vertices}, .threads = 1});
+}
+ResponseField cube(double E, double nu, double vertices) {
+  MeshData<double> mesh = test::box_mesh(V(0.1, 0.1, 0.1), 12);
+  for (auto& p : mesh.vertices) p -= V(0.05, 0, 0.05);
+  return ResponseField(mesh, [](const V& p) { return p.y() <= 1e-6; }, {.E = E, .nu = nu, .mesh = {.vertices = vertices}, .threads = 1});
+}
+}  // namespace
+
+TEST_CASE("large block: flat punch and Hertz tend to the half-space, nu = 0, 0.3, 1/2") {
+  for (double nu : {0.0, 0.3, 0.5}) {
+    const ResponseField field = cube(1e6, nu, 120);
+    ResponseTick<1> tick(field, {.second_order = false});
+    const double a = 1e-3, mu = 1e6 / (2 * (1 + nu)), d = 1e-5;
+    const ResponseContact<double> punch{.place = V(0.004, 0.1, 0.003), .normal = V::UnitY(), .radius = a, .displacement = V(0, -d, 0)};
+    V F;
+    tick.solve(&punch, 1, &F);
+    const double half_space = nu < 0.5 ? 4 * mu * a * std::log(3 - 4 * nu) / (1 - 2 * nu) * d : 8 * mu * a * d;
+    CHECK_RELATIVE(-F.y(), half_space, 0.05);  // the finite block: about a / size, 1-3 %
+    CHECK(std::abs(F.x()) < 0.03 * std::abs(F.y()));
+    const auto ball = tick.solve(SphereContact<double>{.place = punch.place, .normal = V::UnitY(), .radius = 0.005, .depth = 1e-5});
+    CHECK_RELATIVE(ball.force, 4.0 / 3 * 1e6 / (1 - nu * nu) * std::sqrt(0.005) * std::pow(1e-5, 1.5), 0.03);  // ditto, a = 0.2 mm
+  }
+}
+
+TEST_CASE("field: patch moves by d, held vertices rest, reciprocity, forces of two contacts, refinement") {
+  const ResponseField field = ellipsoid(0.5, 140);
+  ResponseTick<2> tick(field);
+  const V n2 = V(0.03 / 0.0036, 0.034641016151377546 / 0.0016, 0).normalized();
+  const ResponseContact<double> two[2] = {{.place = V(-0.02, 0.037712361663282534, 0), .normal = V(-0.02 / 0.0036, 0.037712361663282534 / 0.0016, 0).normalized(), .radius = 0.005, .displacement = V(0, -0.001, 0)},
+                                          {.place = V(0.03, 0.034641016151377546, 0), .normal = n2, .radius = 0.005, .displacement = -0.002 * n2}};
+  const std::vector<V> points = {two[0].place, two[1].place, V(0, -0.04, 0), V(0.06, 0, 0)};
+  const ResponseDisplay display = field.bind(points);
+  V F[2], again[2];
+  std::vector<float> u(4 * points.size(), 7.f), v(4 * points.size());
+  tick.solve(two, 2, F);
+  tick.displace(display, u.data(), 4);
+  tick.solve(two, 2, again);
+  tick.displace(display, v.data(), 4);
+  CHECK((F[0] == again[0] && F[1] == again[1]));  // same bits
+  CHECK(u[0] == v[0]);
+  CHECK(u[3] == 7.f);  // the stride's gap is the caller's
+  CHECK_ABSOLUTE(u[1], -0.001, 1e-9);
+  CHECK_ABSOLUTE(u[4], -0.002 * n2.x(), 1e-9);
+  CHECK((u[8] == 0.f && u[9] == 0.f && u[10] == 0.f));
+  // Reciprocity of the columns, before the system is made symmetric: discretisation error of 140 vertices, 6 %.
+  double difference = 0, norm = 0;
+  for (std::size_t i = 0; i < field.touchable(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto& a = field.node(i);
+      const auto& b = field.node(j);
+      if (field.mesh().fixed_vertex[a.vertex] || field.mesh().fixed_vertex[b.vertex]) continue;
+      difference += (field.block(i, j) - field.block(j, i).transpose()).squaredNorm();
+      norm += field.block(i, j).squaredNorm();
+    }
+  MESSAGE("reciprocity of w: ", std::sqrt(difference / norm));
+  CHECK(std::sqrt(difference / norm) < 0.08);
+  // Refinement: 140 and 200 vertices differ by little.
+  const ResponseField fine = ellipsoid(0.5, 200);
+  ResponseTick<2> finer(fine);
+  finer.solve(two, 2, again);
+  CHECK_RELATIVE(F[0].norm(), again[0].norm(), 0.02);
+  CHECK_RELATIVE(F[1].norm(), again[1].norm(), 0.02);
+}
+
+TEST_CASE("bad input: reported at set-up, zero in a tick") {
+  const MeshData<double> mesh = test::box_mesh(V(1, 1, 1), 3);
+  const auto base = [](const V& p) { return p.y() <= 1e-6; };
+  CHECK_THROWS_AS(ResponseField(mesh, base, {.E = -1}), SetupError);
+  CHECK_THROWS_AS(ResponseField(mesh, base, {.E = 1, .nu = 0.6}), SetupError);
+  CHECK_THROWS_AS(ResponseField(mesh, [](const V&) { return false; }, {.E = 1}), SetupError);
+  CHECK_THROWS_AS(ResponseField(mesh, std::vector<std::uint32_t>{999}, {.E = 1}), SetupError);
+  const ResponseField field(mesh, base, {.E = 1, .mesh = {.vertices = 40}, .threads = 1});
+  ResponseTick<1> tick(field);
+  const double bad = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& contact : {ResponseContact<double>{.place = V(bad, 0, 0), .radius = 0.1}, ResponseContact<double>{.radius = -1},
+                              ResponseContact<double>{.normal = V(0, 0, 9), .radius = 0.1}}) {
+    V F(1, 1, 1);
+    tick.solve(&contact, 1, &F);
+    CHECK(F == V::Zero());
+    float u[3] = {1, 1, 1};
+    tick.displace(field.bind(std::vector<V>{V(0.5, 1, 0.5)}), u, 3);
+    CHECK((u[0] == 0.f && u[1] == 0.f && u[2] == 0.f));
+  }
+}
