@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Everything in the order of the data flow, but for the response field: its set-up brings Eigen's LU, so
-/// include <palpate/response/response_contact.hpp> where it is wanted. Include single headers where compile time matters.
+/// @file  The paper's model in the order of the data flow. Beside it stand two that cost compile time: the response field,
+/// <palpate/response/response_contact.hpp>, and triangle meshes as elastic objects, <palpate/surface/mesh_surface.hpp>.
+/// Include single headers where compile time matters.
 
 // clang-format off
 #include <palpate/version.hpp>

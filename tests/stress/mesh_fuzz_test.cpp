@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Random and mutated vertex buffers through inspect(): it never crashes, and what it passes is a closed, oriented
-/// mesh with volume, by an independent check. Time-boxed: at least 200,000 cases, a million where time
-/// allows.
+/// @file  Random and mutated vertex buffers through inspect(): it never crashes, and what it passes is a closed,
+/// oriented mesh with volume, by an independent check. Time-boxed: 200,000 cases, a million where time allows.
 
 #include <palpate/surface/mesh_surface.hpp>
 

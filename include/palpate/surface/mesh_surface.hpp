@@ -86,8 +86,11 @@ class MeshSurface {
     const S limit = S(1e4L) * (upper_ - lower_).maxCoeff(), size = (x - middle).cwiseAbs().maxCoeff();
     if (!is_finite(size)) return detail::nowhere<S>(bvh_.vertices()[0], vertex_normals_[0]);
     if (size > limit) {
-      const Nearest near = bvh_.closest(middle + (x - middle) / size * limit);
-      const S d = size * ((x - near.position) / size).norm();
+      // In two steps: 1 / size may be no normal number, and the host's flags may multiply by it.
+      const S shrink = size > S(1e15L) ? S(1e-15L) : S(1);
+      const Vec3<S> e = (x - middle) * shrink / (size * shrink);
+      const Nearest near = bvh_.closest(middle + limit * e);
+      const S d = size * (e + (middle - near.position) / size).norm();
       return {near.position, normal(near), is_finite(d) ? d : (std::numeric_limits<S>::max)()};
     }
     const Nearest near = bvh_.closest(x, within(x) ? grid_.at(x).triangle : 0);
