@@ -5,21 +5,46 @@
 /// shapes and pictures. Without the vendor's SDK the stand-in device of examples/standin takes its place, with a
 /// scripted hand.
 
+#include "play.hpp"
 #include "scenes.hpp"
-#include "session.hpp"
+
+#include <palpate/surface/mesh_surface.hpp>
 
 namespace touch {
 
 using namespace palpate;
 
 template <class Body>
+int run(Options options, const Body& body, MeshData<S> display, const char* shape) {
+  if (options.shape.empty()) options.shape = shape;
+  return play(options, Scene<Body>{.title = "object " + options.object + ", tool " + options.tool + ", script " + options.script,
+                                   .body = body,
+                                   .display = std::move(display),
+                                   .tool = options.tool,
+                                   .force = paper_force,
+                                   .coupling = {},
+                                   .view = view_of(body),
+                                   .script = [](const Options& o, const Body& b, const Tool& tool) {
+                                     return make_script(o, b, tool.mesh);
+                                   }});
+}
+
+template <class Body>
 int run(const Options& options, const Body& body) {
-  const Tool tool = make_tool(options);
-  Feel<Contact<Body>> feel{make_contact(body, tool, paper_force)};
-  const Script script = make_script(options, body, tool.mesh);
-  const V top = body.raycast(V(0, 1, 0), -V::UnitY()).position;
-  const std::string title = "object " + options.object + ", tool " + options.tool + ", script " + options.script;
-  return perform(options, feel, tool, script, top, title, [](const auto&) {}, [](const auto&) {});
+  return run(options, body, body.mesh(display_vertices), "skeleton");
+}
+
+/// The middle of the mesh's box becomes the origin.
+int run_file(const Options& options) {
+  MeshData<S> mesh = read_mesh(options.file(options.object));
+  V low = mesh.vertices.front(), high = low;
+  for (const V& v : mesh.vertices) low = low.cwiseMin(v), high = high.cwiseMax(v);
+  for (V& v : mesh.vertices) v -= (low + high) / 2;
+  const V size = 1e3 * (high - low);
+  const MeshSurface<S> body{TriangleMesh<S>(mesh)};
+  std::printf("%s: %zu vertices, %zu triangles, %.0f x %.0f x %.0f mm\n", options.object.c_str(), mesh.vertices.size(),
+              mesh.triangles.size(), size.x(), size.y(), size.z());
+  return run(options, body, std::move(mesh), "response");
 }
 
 }  // namespace touch
@@ -38,8 +63,7 @@ int main(int argc, char** argv) {
     if (options.object == "box") return run(options, Box<S>({.half = V(0.05, 0.04, 0.05)}));
     if (options.object == "cylinder") return run(options, Cylinder<S>({.radius = 0.05, .half_height = 0.04}));
     if (options.object == "superellipsoid") return run(options, Superellipsoid<S>({.axes = V(0.06, 0.04, 0.05)}));
-    if (options.object.find('.') != std::string::npos)
-      refuse(options.object + ": mesh files as elastic objects are not supported yet; choose one of the exact surfaces");
+    if (is_mesh_file(options.object)) return run_file(options);
     refuse("unknown object " + options.object);
   } catch (const palpate::SetupError& error) {
     std::fprintf(stderr, "palpate_touch: %s\n", error.what());

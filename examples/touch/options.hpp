@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <string>
 
+#include "mesh_file.hpp"
+
 namespace touch {
 
 struct Options {
@@ -15,26 +17,35 @@ struct Options {
   std::string script = "figure10";
   std::string out = "out";
   std::string scene;    ///< empty: none
-  double scale = 1;     ///< of tool files
+  std::string shape;    ///< none, skeleton or response; empty: what suits the object
+  double scale = 1;     ///< of mesh files
+  char up = 'y';        ///< of mesh files
+  bool repair = false;  ///< of mesh files
   double rate = 1000;   ///< [Hz]
   bool stepped = false;
   bool real_time = false;  ///< of a scene
   bool help = false;
+
+  /// How to read the mesh file of this name.
+  [[nodiscard]] MeshFile file(const std::string& name) const { return {name, scale, up, repair}; }
 };
 
 inline constexpr const char* usage =
     R"(palpate_touch: a tool, held by a haptic device, presses and slides on an elastic object.
 
-  --object NAME   ellipsoid (default), sphere, box, cylinder, superellipsoid
-  --tool NAME     mallet (default), head, tail, sphere, pin, block, compass, or FILE.obj
-  --scale S       metres per unit of FILE.obj (default 1)
+  --object NAME   ellipsoid (default), sphere, box, cylinder, superellipsoid, or FILE.obj, .ply, .stl
+  --tool NAME     mallet (default), head, tail, sphere, pin, block, compass, or FILE.obj, .ply, .stl
+  --scale S       metres per unit of the files (default 1)
+  --up AXIS       the files' axis that points up: x, y (default) or z
+  --repair        weld, turn and drop in the files what is plainly wrong, and say so
   --script NAME   figure10 (default), press, slide
+  --shape MODEL   how the object deforms: skeleton, response, or none. Exact surfaces: skeleton; files: response
   --rate HZ       servo rate asked of the device (default 1000)
   --stepped       simulated time instead of real time: same bits in every run (stand-in device only)
   --out FOLDER    where the results go (default out)
 
-  --scene NAME    a preset of all that, with the object's shape: meshes for ParaView, pictures and an animation in
-                  out/NAME. ellipsoid (Fig. 10), cube-head and cube-tail (Fig. 11), heart (Fig. 12). Stepped.
+  --scene NAME    a preset of object, tool, script and shape in out/NAME, in simulated time: ellipsoid (Fig. 10),
+                  cube-head and cube-tail (Fig. 11), heart (Fig. 12)
   --real-time     the scene at the device's own pace
 )";
 
@@ -58,8 +69,15 @@ inline Options parse(int argc, char** argv) {
       if (end == text.c_str() || *end != '\0' || !(x > 0)) refuse(name + " needs a number > 0, got " + text);
       return x;
     };
+    const auto axis = [&](const std::string& text) {
+      if (text != "x" && text != "y" && text != "z") refuse(name + " needs x, y or z, got " + text);
+      return text.front();
+    };
     if (name == "--object") options.object = value();
     else if (name == "--tool") options.tool = value();
+    else if (name == "--shape") options.shape = value();
+    else if (name == "--up") options.up = axis(value());
+    else if (name == "--repair") options.repair = true;
     else if (name == "--script") options.script = value();
     else if (name == "--out") options.out = value();
     else if (name == "--scale") options.scale = number();

@@ -18,6 +18,15 @@ struct View {
   double per_newton = 25;  ///< length of the force arrow [mm/N]
 };
 
+/// From the front, the right and above, so that the body and a tool on it fit in.
+template <class Body>
+[[nodiscard]] View view_of(const Body& body) {
+  const V half = 500 * (body.upper() - body.lower());
+  const double size = half.norm();
+  const V at(0, 0.55 * half.y(), 0);
+  return {.from = at + size * V(0.85, 1.7, 3.7), .at = at, .angle = 34, .per_newton = 0.2 * size};
+}
+
 /// Colours of the displacement from none to most; for POV-Ray and for the legend.
 inline constexpr double palette[][4] = {
     {0, 0.90, 0.91, 0.92}, {0.2, 0.99, 0.89, 0.62}, {0.45, 0.98, 0.62, 0.30}, {0.7, 0.84, 0.19, 0.18}, {1, 0.38, 0.03, 0.25}};
@@ -154,15 +163,15 @@ class Pictures {
   static void write_arrow(std::FILE* out, const V& from, const V& arrow) {
     const double length = arrow.norm();
     if (!(length > 1)) return;
-    const double head = (std::min)(7.0, 0.6 * length);
+    const double head = (std::min)(7.0, 0.4 * length);  // [mm]
     const V neck = from + arrow * (1 - head / length), tip = from + arrow;
     std::fputs("union{cylinder{", out);
     vector(out, from);
     std::fputs(",", out);
     vector(out, neck);
-    std::fputs(",1.1} cone{", out);
+    std::fprintf(out, ",%.3f} cone{", 0.16 * head);
     vector(out, neck);
-    std::fputs(",2.8,", out);
+    std::fprintf(out, ",%.3f,", 0.4 * head);
     vector(out, tip);
     std::fputs(",0} texture{Force} no_shadow}\n", out);
   }

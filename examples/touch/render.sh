@@ -6,7 +6,14 @@ render() {
   local folder=$1 here=$2 frame key
   local frames=$folder/frames
   # Render small, for the animation; then the frame that stands for all once more, large.
-  for frame in "$frames"/frame_*.pov; do ray "$frame" 480 360; done
+  local count=0 all=("$frames"/frame_*.pov)
+  echo "rendering      ${#all[@]} pictures"
+  for frame in "${all[@]}"; do
+    count=$((count + 1))
+    if [ -t 1 ]; then printf '\rpicture        %d of %d' "$count" "${#all[@]}"; fi
+    ray "$frame" 480 360
+  done
+  if [ -t 1 ]; then echo; fi
   key=$(sed -n "s/^key = '\(.*\)'/\1/p" "$frames/legend.gp")
   ray "$frames/frame_$key.pov" 960 720 "$frames/key.png"
   gnuplot -e "folder='$folder'" "$here/picture.gp"
@@ -20,8 +27,8 @@ ray() {
     { tail -20 "$(dirname "$1")/povray.log" >&2; return 1; }
 }
 
-# figure NAME FILE: the paper's figure over several scenes; uses $plots and $root.
+# figure NAME FILE: the paper's figure over several scenes; uses $plots and $out.
 figure() {
-  gnuplot -e "out='$root/out'" "$plots/$1.gp"
+  gnuplot -e "out='$out'" "$plots/$1.gp"
   echo "wrote          $2"
 }

@@ -8,6 +8,6 @@
 namespace touch {
 
 /// Runs options.scene and writes its results into options.out/<scene>.
-int run_scene(const Options& options);
+int run_scene(Options options);
 
 }  // namespace touch

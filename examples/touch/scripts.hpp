@@ -27,12 +27,16 @@ inline double smooth_step(double t, double begin, double end) {
   return s * s * (3 - 2 * s);
 }
 
-/// The path, worked out before the servo loop runs: places every 10 ms, straight lines between.
+/// The path, worked out before the servo loop runs: places every 10 ms, straight lines between. Where it rises or falls
+/// faster than a hand, 0.15 m/s, it is lifted before and after, as a hand lifts a tool over a step.
 template <class Path>
 Script table(double seconds, const Path& path) {
   constexpr double step = 0.01;
   std::vector<palpate::Vec3<double>> places;
   for (int i = 0; i <= static_cast<int>(seconds / step) + 1; ++i) places.push_back(path(i * step));
+  constexpr double climb = 0.15 * step;  // [m]
+  for (std::size_t i = 1; i < places.size(); ++i) places[i].y() = (std::max)(places[i].y(), places[i - 1].y() - climb);
+  for (std::size_t i = places.size() - 1; i > 0; --i) places[i - 1].y() = (std::max)(places[i - 1].y(), places[i].y() - climb);
   return {seconds,
           [places = std::move(places)](double t) -> palpate::Vec3<double> {
             const double s = std::clamp(t / step, 0.0, static_cast<double>(places.size() - 2));
@@ -52,12 +56,12 @@ Script make_script(const Options& options, const Body& body, const palpate::Mesh
   // Where the tool, standing over (x, z), would be `height` off its first touch, along the surface's normal.
   const auto over = [=, &tool](double x, double z, double height) -> V {
     const palpate::RayHit<double> hit = below(x, z);
-    if (!hit.hit) return V(x, height, z);
-    double y = hit.position.y();
+    double y = hit.hit ? hit.position.y() : -1;
     for (const V& v : tool.vertices) {
       const palpate::RayHit<double> under = below(x + v.x(), z + v.z());
       if (under.hit) y = (std::max)(y, under.position.y() - v.y());
     }
+    if (!hit.hit) return V(x, (std::max)(y, 0.0) + height, z);
     return V(x, y, z) + height * body.closest(V(hit.position + 1e-6 * V::UnitY())).normal;
   };
   const double reach = 0.6 * body.upper().x();

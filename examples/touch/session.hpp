@@ -8,6 +8,10 @@
 #include <fstream>
 #include <thread>
 
+#if __has_include(<unistd.h>)
+#include <unistd.h>
+#endif
+
 #include "felt.hpp"
 #include "openhaptics.hpp"
 #include "options.hpp"
@@ -67,6 +71,15 @@ void print_summary(const Device& device) {
   std::printf("in contact     %zu ticks: %.0f %% stick, %.0f %% slip\n", contact, 100 - share, share);
 }
 
+/// Is the output a terminal, so that a progress line can be written over and over?
+inline bool is_terminal() {
+#if __has_include(<unistd.h>)
+  return isatty(STDOUT_FILENO) != 0;
+#else
+  return false;
+#endif
+}
+
 /// Runs the script on the device. In this thread `update(record)` gets the newest tick `update_rate` times a second
 /// while the servo loop goes on, and `finish(device)` comes after the stop. `top`: the device's origin in the scene.
 template <class Feel, class Update, class Finish>
@@ -112,7 +125,7 @@ int perform(const Options& options, Feel& feel, const Tool& tool, const Script& 
   std::printf("%s, tool of %zu points, device \"%s\", %s, %.1f s\n", title.c_str(), feel.solver.tool().size(),
               device.limits().model, options.stepped ? "stepped" : "real time", script.seconds);
   device.start();
-  const bool terminal = std::getenv("TERM") != nullptr && std::getenv("CI") == nullptr;
+  const bool terminal = is_terminal();
   for (double seconds = 0; seconds < script.seconds && device.running();) {
     if (options.stepped) {
 #ifdef PALPATE_STANDIN

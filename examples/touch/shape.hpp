@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  The shape beside the servo loop: contacts from the triple buffer to the vertices of a display mesh, and the
-/// frames that are kept of it.
+/// @file  The shape beside the servo loop: contacts from the triple buffer to the vertices of a display mesh by a
+/// deformation model, and the frames that are kept of it.
 
 #include <palpate/deformation/beam_skeleton.hpp>
 #include <palpate/interpolation/phong.hpp>
 
 #include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
 
 #include "felt.hpp"
 
@@ -38,22 +41,35 @@ template <class Body>
                                     palpate::VolumePreserving<S>({.volume = body.volume()})));
 }
 
-/// The paper's shape over an exact surface, fixed at its lowest point.
+/// Where the paper's model is fixed: the body's lowest point under its middle [m].
+template <class Body>
+[[nodiscard]] V bottom(const Body& body) {
+  const V middle = (body.lower() + body.upper()) / 2;
+  return body.raycast(V(middle.x(), body.lower().y() - 1, middle.z()), V::UnitY()).position;
+}
+
+/// A display mesh that a deformation model moves; the model's type is forgotten here.
 class Shape {
  public:
-  using Interpolation = palpate::PhongInterpolation<S>;
-  using Model = palpate::BeamSkeletonDeformation<Beams, Interpolation>;
+  using Contacts = std::span<const palpate::ContactState<S>>;
 
-  template <class Body>
-  Shape(const Body& body, std::size_t vertices)
-      : Shape(body, body.mesh(vertices), body.raycast(V(0, -1, 0), V::UnitY()).position) {}
+  template <palpate::DeformationModel Model>
+  Shape(palpate::MeshData<S> mesh, Model model, std::optional<palpate::AreaNeighbourhood<S>> neighbourhood = {})
+      : mesh_(std::move(mesh)),
+        position_(mesh_.vertices.size()),
+        normal_(mesh_.vertices.size()),
+        neighbourhood_(std::move(neighbourhood)) {
+    const auto kept = std::make_shared<Model>(std::move(model));
+    kept->write_rest(buffer());
+    write_ = [kept](Contacts contacts, const Buffer& out) { return kept->write(contacts, out).vertices; };
+  }
 
   /// Takes over the newest contacts.
-  void update(const Felt& felt) noexcept {
+  void update(const Felt& felt) {
     const auto begin = std::chrono::steady_clock::now();
-    const auto moved = model_.write(std::span(felt.contacts.begin(), felt.contacts.size()), buffer());
+    const std::size_t moved = write_(Contacts(felt.contacts.begin(), felt.contacts.size()), buffer());
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
-    if (moved.vertices == 0) return;
+    if (moved == 0) return;
     seconds_ += spent.count();
     ++updates_;
   }
@@ -62,29 +78,19 @@ class Shape {
   }
 
   [[nodiscard]] const palpate::MeshData<S>& rest() const noexcept { return mesh_; }
-  /// w, the local neighbourhood's factor of D.
+  /// w, the local neighbourhood's factor of D; 1 where the model has none.
   [[nodiscard]] S factor(const palpate::ContactState<S>& contact) const noexcept {
-    return neighbourhood_.factor({.area = contact.area, .points = static_cast<S>(contact.points)});
+    if (!neighbourhood_) return 1;
+    return neighbourhood_->factor({.area = contact.area, .points = static_cast<S>(contact.points)});
   }
   [[nodiscard]] std::size_t updates() const noexcept { return updates_; }
   /// Mean time of an update that moved something [s].
   [[nodiscard]] double mean_time() const noexcept { return updates_ > 0 ? seconds_ / static_cast<double>(updates_) : 0; }
 
  private:
-  using Neighbourhood = palpate::AreaNeighbourhood<S>;
+  using Buffer = palpate::VertexBuffer<S>;
 
-  template <class Body>
-  Shape(const Body& body, palpate::MeshData<S> mesh, const V& fixed)
-      : mesh_(std::move(mesh)),
-        position_(mesh_.vertices.size()),
-        normal_(mesh_.vertices.size()),
-        neighbourhood_({.reference_area = 1e-4}),  // up to 1 cm^2 a contact counts as a point
-        model_(make_beams(body), Interpolation(palpate::make_partition(body, mesh_)), neighbourhood_, mesh_,
-               {.fixed = fixed}) {
-    model_.write_rest(buffer());
-  }
-
-  [[nodiscard]] palpate::VertexBuffer<S> buffer() noexcept {
+  [[nodiscard]] Buffer buffer() noexcept {
     return {.positions = position_.front().data(),
             .position_stride = sizeof(V),
             .normals = normal_.front().data(),
@@ -93,10 +99,31 @@ class Shape {
 
   palpate::MeshData<S> mesh_;
   std::vector<V> position_, normal_;
-  Neighbourhood neighbourhood_;
-  Model model_;
+  std::optional<palpate::AreaNeighbourhood<S>> neighbourhood_;
+  std::function<std::size_t(Contacts, const Buffer&)> write_;
   double seconds_ = 0;
   std::size_t updates_ = 0;
 };
+
+/// The paper's model: skeleton, released ends, interpolation.
+template <class Body>
+[[nodiscard]] Shape skeleton_shape(const Body& body, palpate::MeshData<S> mesh) {
+  using Interpolation = palpate::PhongInterpolation<S>;
+  const palpate::AreaNeighbourhood<S> neighbourhood({.reference_area = 1e-4});  // up to 1 cm^2 a contact counts as a point
+  palpate::BeamSkeletonDeformation<Beams, Interpolation> model(make_beams(body),
+                                                               Interpolation(palpate::make_partition(body, mesh)),
+                                                               neighbourhood, mesh, {.fixed = bottom(body)});
+  return Shape(std::move(mesh), std::move(model), neighbourhood);
+}
+
+/// By the model's name.
+template <class Body>
+[[nodiscard]] Shape make_shape(const std::string& model, const Body& body, const palpate::MeshData<S>& mesh) {
+  if (model == "skeleton") {
+    if constexpr (palpate::HasExtremalPoints<Body>) return skeleton_shape(body, mesh);
+    else refuse("the skeleton needs curvature extremal points, which meshes do not have yet; choose another shape");
+  }
+  refuse("unknown shape " + model + " (skeleton, response, none)");
+}
 
 }  // namespace touch

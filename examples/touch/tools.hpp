@@ -5,14 +5,8 @@
 
 #include <palpate/palpate.hpp>
 
+#include "mesh_file.hpp"
 #include "options.hpp"
-
-#if __has_include(<tiny_obj_loader.h>)
-#include <tiny_obj_loader.h>
-#define TOUCH_READS_OBJ 1
-#else
-#define TOUCH_READS_OBJ 0
-#endif
 
 namespace touch {
 
@@ -40,29 +34,6 @@ inline palpate::MeshData<S> standing(palpate::MeshData<S> mesh) {
   for (V& v : mesh.vertices) v.y() -= lowest;
   return mesh;
 }
-
-#if TOUCH_READS_OBJ
-inline palpate::MeshData<S> read_obj(const std::string& file, double scale) {
-  tinyobj::attrib_t attributes;
-  std::vector<tinyobj::shape_t> shapes;
-  std::vector<tinyobj::material_t> materials;
-  std::string warning, error;
-  if (!tinyobj::LoadObj(&attributes, &shapes, &materials, &warning, &error, file.c_str(), nullptr, true)) {
-    refuse("cannot read " + file + ": " + error);
-  }
-  palpate::MeshData<S> mesh;
-  for (std::size_t i = 0; i + 2 < attributes.vertices.size(); i += 3) {
-    mesh.vertices.emplace_back(scale * V(attributes.vertices[i], attributes.vertices[i + 1], attributes.vertices[i + 2]));
-  }
-  for (const tinyobj::shape_t& shape : shapes) {
-    for (std::size_t i = 0; i + 2 < shape.mesh.indices.size(); i += 3) {
-      const auto corner = [&](std::size_t k) { return static_cast<std::uint32_t>(shape.mesh.indices[i + k].vertex_index); };
-      mesh.triangles.push_back({corner(0), corner(1), corner(2)});
-    }
-  }
-  return mesh;
-}
-#endif
 
 /// Spheres side by side as one mesh.
 inline palpate::MeshData<S> spheres(const std::vector<V>& centres, S radius, std::size_t vertices) {
@@ -115,14 +86,10 @@ inline Tool make_tool(const Options& options) {
   if (name == "block") {
     return {standing(Box<S>({.half = V(10e-3, 6e-3, 10e-3)}).mesh(500)), 4e-4, 1e-3, V(0, 6e-3, 0)};
   }
-  if (name.size() > 4 && name.substr(name.size() - 4) == ".obj") {
-#if TOUCH_READS_OBJ
-    const TriangleMesh<S> mesh(standing(read_obj(name, options.scale)));
+  if (is_mesh_file(name)) {
+    const TriangleMesh<S> mesh(standing(read_mesh(options.file(name))));
     // A tenth of the surface is a guess at what touches at once; about 2,000 points feel.
     return {mesh.data(), 0.1 * mesh.area(), std::sqrt(mesh.area() / 2000), mesh.centroid()};
-#else
-    refuse("built without tinyobjloader (Debian: libtinyobjloader-dev): cannot read " + name);
-#endif
   }
   refuse("unknown tool " + name);
 }

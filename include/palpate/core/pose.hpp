@@ -5,13 +5,15 @@
 
 #include <palpate/core/vector.hpp>
 
+#include <cstring>
+
 namespace palpate {
 
 /// X_OT: maps tool coordinates to object coordinates, x_O = rotation x_T + translation [m].
 template <Real S>
 struct Pose {
-  Mat3<S> rotation = Mat3<S>::Identity();   ///< orthonormal, right-handed
-  Vec3<S> translation = Vec3<S>::Zero();    ///< place of the tool's origin [m]
+  Mat3<S> rotation = Mat3<S>::Identity();  ///< orthonormal, right-handed
+  Vec3<S> translation = Vec3<S>::Zero();   ///< place of the tool's origin [m]
 
   [[nodiscard]] Vec3<S> operator*(const Vec3<S>& p_T) const noexcept { return rotation * p_T + translation; }
   /// The inverse map, object to tool coordinates.
@@ -32,6 +34,13 @@ template <Real S>
   if (!within(X.translation, limit) || !within(x, S(2)) || !within(y, S(2)) || !within(z, S(2))) return false;
   return within(Vec3<S>(x.squaredNorm() - S(1), y.squaredNorm() - S(1), z.squaredNorm() - S(1)), tolerance) &&
          within(x.cross(y) - z, tolerance);
+}
+
+/// Bit by bit: also under -ffast-math no NaN is the same as a number, and -0 is not 0.
+template <Real S>
+[[nodiscard]] inline bool same_bits(const Pose<S>& a, const Pose<S>& b) noexcept {
+  static_assert(sizeof(Pose<S>) == 12 * sizeof(S));
+  return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
 /// What the tool feels: force [N] and torque about its centre of mass [N m], in object coordinates.

@@ -60,7 +60,9 @@ struct ByComponents {
   /// The largest stretch <= trial [m] whose tangential force is within limit(F_cn).
   template <ForceLaw L, class Limit, Real S = typename L::Scalar>
   [[nodiscard]] static S admissible(const L& law, S /*depth*/, S normal_force, S trial, const Limit& limit) noexcept {
-    return (std::min)(trial, law.depth(limit(normal_force)));
+    const S most = limit(normal_force);
+    if (law.force(trial) <= most) return trial;  // sticks: no inverse needed
+    return (std::min)(trial, law.depth(most));
   }
   /// Energy [J] that the stretch |D_t| [m] adds.
   template <ForceLaw L, Real S = typename L::Scalar>

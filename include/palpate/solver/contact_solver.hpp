@@ -58,8 +58,9 @@ struct TickResult {
 /// no byte and no instruction.
 ///
 /// Real time: tick() is noexcept, takes no heap, lock or I/O, and its time is bounded by the tool's points. Same poses,
-/// same bits. A pose that is not finite or not a rotation gives the zero wrench and `Status::invalid_pose`; contact is
-/// forgotten and begins anew at the next usable pose.
+/// same bits. From the third tick on at one pose the last result stands and nothing is worked out. A pose that is not
+/// finite or not a rotation gives the zero wrench and `Status::invalid_pose`; contact is forgotten and begins anew at the
+/// next usable pose.
 template <ContactSurface Object, ForceLaw Force, FrictionLaw Friction = Frictionless<typename Object::Scalar>,
           Topology Contacts = SinglePoint, WrenchPolicy Acting = AtContact,
           RegionForceCoupling Coupling = IndependentRegions>
@@ -123,7 +124,7 @@ class ContactSolver {
   void reset() noexcept {
     contacts_.clear();
     collector_.reset();
-    if constexpr (is_rate_dependent) last_.known = false;
+    last_.ticks = 0;
   }
 
   [[nodiscard]] const Object& object() const noexcept { return object_; }
@@ -139,37 +140,44 @@ class ContactSolver {
     Vec3<S> friction;  // of the last tick [N]
     S depth;           // D_n of the last tick [m]
   };
-  struct LastPose {  // what a rate-dependent law remembers
+  struct Last {
     Pose<S> pose;
-    bool known = false;
+    TickResult<S> result{};
+    int ticks = 0;  // in a row at this pose, up to 2; 0: none yet
   };
   template <class Item, int Role, bool present>
   using Present = std::conditional_t<present, Item, Absent<Role>>;
 
   TickResult<S> step(const Pose<S>& X, [[maybe_unused]] S dt, Status status) noexcept {
+    // The second tick at a pose settles what the motion into it left (slip, rate); after that nothing changes.
+    const bool again = last_.ticks > 0 && same_bits(X, last_.pose);
+    if (again && last_.ticks > 1) return {last_.result.wrench, last_.result.status | status};
     if (!is_usable(X)) {
       reset();
       return {{}, status | Status::invalid_pose};
     }
+    const TickResult<S> result = contact_at(X, dt);
+    if (!is_finite(result.wrench.force) || !is_finite(result.wrench.torque)) {
+      reset();
+      return {{}, result.status | status | Status::non_finite_result};
+    }
+    last_ = {X, result, again ? 2 : 1};
+    return {result.wrench, result.status | status};
+  }
+
+  TickResult<S> contact_at(const Pose<S>& X, [[maybe_unused]] S dt) noexcept {
     contacts_.clear();
     Sums sums;
-    status |= collector_.collect(object_, tool_, force_, X, sums);
-    Wrench<S> wrench;
-    if (has(status, Status::contact)) {
-      if constexpr (has_friction && ClusteredTopology<Contacts>) {
-        if (collector_.changed()) inherit(X, sums);
-      }
-      for (std::size_t k = 0; k < max_regions; ++k) {
-        if (collector_.slot(k).active) press(k, sums[k], X, dt, wrench);
-      }
-      if constexpr (Coupling::active) couple(X, wrench);
+    TickResult<S> result{{}, collector_.collect(object_, tool_, force_, X, sums)};
+    if (!has(result.status, Status::contact)) return result;
+    if constexpr (has_friction && ClusteredTopology<Contacts>) {
+      if (collector_.changed()) inherit(X, sums);
     }
-    if constexpr (is_rate_dependent) last_ = {X, true};
-    if (!is_finite(wrench.force) || !is_finite(wrench.torque)) {
-      reset();
-      return {{}, status | Status::non_finite_result};
+    for (std::size_t k = 0; k < max_regions; ++k) {
+      if (collector_.slot(k).active) press(k, sums[k], X, dt, result.wrench);
     }
-    return {wrench, status};
+    if constexpr (Coupling::active) couple(X, result.wrench);
+    return result;
   }
 
   /// One region: equivalent contact, rate term, friction; adds its force to the wrench.
@@ -179,7 +187,7 @@ class ContactSolver {
     S normal_force = sum.force.norm();
     const S depth = equivalent_depth(sum, normal_force);
     if constexpr (is_rate_dependent) {
-      if (dt > S(0) && last_.known && normal_force > (std::numeric_limits<S>::min)()) {
+      if (dt > S(0) && last_.ticks > 0 && normal_force > (std::numeric_limits<S>::min)()) {
         // How fast the tool's point at the pressure centre goes in. Differences of depths would jump when regions merge.
         const Vec3<S> centre = sum.centre();
         const S gone_in = normal.dot(last_.pose * X.to_tool(centre) - centre);
@@ -319,8 +327,8 @@ class ContactSolver {
   PALPATE_NO_UNIQUE_ADDRESS Coupling coupling_;
   PALPATE_NO_UNIQUE_ADDRESS typename Coupling::Result passed_on_{};
   Collector<Contacts, S> collector_;
-  PALPATE_NO_UNIQUE_ADDRESS Present<LastPose, 0, is_rate_dependent> last_{};
-  PALPATE_NO_UNIQUE_ADDRESS Present<std::array<Stuck, max_regions>, 1, has_friction> stuck_{};
+  Last last_{};
+  PALPATE_NO_UNIQUE_ADDRESS Present<std::array<Stuck, max_regions>, 0, has_friction> stuck_{};
   FixedVector<ContactState<S>, max_regions> contacts_;
 };
 

@@ -34,10 +34,10 @@ template <ContactSurface Object, ForceLaw Force>
   return status;
 }
 
-/// Penetration of the first `count` of eight points; at once where the surface can.
+/// Penetration of the first `count` of eight points, at once where the surface can; depth 0 for the others. How many touch.
 template <ContactSurface Object, Real S>
-inline void penetrate(const Object& object, const PointLanes<S>& x, [[maybe_unused]] std::uint32_t count,
-                      PenetrationLanes<S>& in) noexcept {
+inline std::uint32_t penetrate(const Object& object, const PointLanes<S>& x, std::uint32_t count,
+                               PenetrationLanes<S>& in) noexcept {
   if constexpr (HasPenetrationLanes<Object>) {
     object.penetration(x, in);
   } else {
@@ -49,22 +49,35 @@ inline void penetrate(const Object& object, const PointLanes<S>& x, [[maybe_unus
       in.gradient_z[i] = one.gradient.z();
     }
   }
+  for (std::uint32_t i = count; i < x.x.size(); ++i)
+    in.depth[i] = in.gradient_x[i] = in.gradient_y[i] = in.gradient_z[i] = S(0);
+  std::uint32_t touching = 0;
+  for (const S depth : in.depth) touching += depth > S(0) ? 1u : 0u;
+  return touching;
 }
 
-/// Calls visit(point, x, penetration) for every point of the tool that is inside the surface, in order of the points.
+/// Calls visit(begin, x, in) for every leaf of the tool with a point inside the surface: eight points from `begin` on, depth
+/// <= 0 for those that do not touch.
 template <ContactSurface Object, Real S, class Visit>
-inline void for_each_touching(const ToolPoints<S>& tool, const Pose<S>& X, const Object& object,
-                              const Visit& visit) noexcept {
-  for_each_candidate_leaf(
-      tool, X, object, [&](std::uint32_t begin, std::uint32_t count, const PointLanes<S>& x) noexcept {
-        PenetrationLanes<S> in;
-        penetrate(object, x, count, in);
-        for (std::uint32_t i = 0; i < count; ++i) {
-          if (!(in.depth[i] > S(0))) continue;
-          visit(begin + i, Vec3<S>(x.x[i], x.y[i], x.z[i]),
-                Penetration<S>{in.depth[i], Vec3<S>(in.gradient_x[i], in.gradient_y[i], in.gradient_z[i])});
-        }
-      });
+inline void for_each_touching_leaf(const ToolPoints<S>& tool, const Pose<S>& X, const Object& object,
+                                   const Visit& visit) noexcept {
+  for_each_candidate_leaf(tool, X, object,
+                          [&](std::uint32_t begin, std::uint32_t count, const PointLanes<S>& x) noexcept {
+                            PenetrationLanes<S> in;
+                            if (penetrate(object, x, count, in) > 0) visit(begin, x, in);
+                          });
+}
+
+/// Adds to `sum` the points of a leaf that begins at `begin`, each with its share of the law's force.
+template <class Sharing, Real S, ForceLaw Force>
+inline void add_leaf(const ToolPoints<S>& tool, const Force& force, std::uint32_t begin,
+                     const PointLanes<S>& x, const PenetrationLanes<S>& in, LaneSum<S>& sum) noexcept {
+  std::array<S, 8> f, area;
+  for (std::size_t i = 0; i < f.size(); ++i) area[i] = tool.area((std::min)(begin + i, tool.size() - 1));
+  for (std::size_t i = 0; i < f.size(); ++i)
+    f[i] =
+        in.depth[i] > S(0) ? Sharing::weight(area[i], tool.contact_area()) * force.force(in.depth[i]) : S(0);
+  sum.add(x, in, f, area);
 }
 }  // namespace detail
 
@@ -84,7 +97,8 @@ class Collector<SinglePoint, S> {
     const bool touching = in.depth > S(0);
     slot_.update(touching);
     if (!touching) return Status::ok;
-    sums[0].add(x, X.rotation * (tool.tip - tool.centre_of_mass), in.gradient, in.depth, force.force(in.depth), S(0));
+    sums[0].add(x, X.rotation * (tool.tip - tool.centre_of_mass), in.gradient, in.depth,
+                force.force(in.depth), S(0));
     return Status::contact | detail::depth_status(object, force, in.depth);
   }
   [[nodiscard]] const RegionSlot& slot(std::size_t) const noexcept { return slot_.slot(); }
@@ -103,16 +117,18 @@ class Collector<SingleRegion<Sharing>, S> {
   template <ContactSurface Object, ForceLaw Force>
   Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
                  std::array<RegionSum<S>, 1>& sums) noexcept {
-    RegionSum<S>& sum = sums[0];
-    const Vec3<S> centre_of_mass = X * tool.centre_of_mass();
-    detail::for_each_touching(tool, X, object, [&](std::uint32_t point, const Vec3<S>& x, const Penetration<S>& in) noexcept {
-      const S area = tool.area(point);
-      const S f = Sharing::weight(area, tool.contact_area()) * force.force(in.depth);
-      sum.add(x, x - centre_of_mass, in.gradient, in.depth, f, area);
-    });
-    const bool touching = sum.points > 0;
+    LaneSum<S> lanes(X * tool.centre_of_mass());
+    bool touching = false;
+    detail::for_each_touching_leaf(
+        tool, X, object,
+        [&](std::uint32_t begin, const PointLanes<S>& x, const PenetrationLanes<S>& in) noexcept {
+          detail::add_leaf<Sharing>(tool, force, begin, x, in, lanes);
+          touching = true;
+        });
     slot_.update(touching);
     if (!touching) return Status::ok;
+    RegionSum<S>& sum = sums[0];
+    sum = lanes.total();
     sum.scale(Sharing::norm(static_cast<S>(sum.points)));
     return Status::contact | detail::depth_status(object, force, sum.deepest);
   }
@@ -129,31 +145,56 @@ class Collector<Regions<N, Sharing>, S> {
  public:
   Collector(const Regions<N, Sharing>& regions, const ToolPoints<S>& tool)
       : tracker_(ProximityGraph<S>(tool, static_cast<S>(regions.distance)), tool.size()),
+        leaf_((tool.size() + lanes - 1) / lanes),
         point_(tool.size()),
-        touch_(tool.size()) {}
+        place_(tool.size()) {}
 
   template <ContactSurface Object, ForceLaw Force>
   Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
                  std::array<RegionSum<S>, N>& sums) noexcept {
-    std::size_t count = 0;
+    std::size_t leaves = 0, count = 0;
     S deepest = S(0);
-    detail::for_each_touching(tool, X, object, [&](std::uint32_t point, const Vec3<S>& x, const Penetration<S>& in) noexcept {
-      point_[count] = point;
-      touch_[count++] = {x, in};
-      deepest = (std::max)(deepest, in.depth);
-    });
-    Status status = tracker_.update({point_.data(), count}, [&](std::size_t i) { return touch_[i].x; });
+    detail::for_each_touching_leaf(
+        tool, X, object,
+        [&](std::uint32_t begin, const PointLanes<S>& x, const PenetrationLanes<S>& in) noexcept {
+          leaf_[leaves++] = {begin, 0, x, in};
+          for (std::uint32_t i = 0; i < lanes; ++i) {
+            if (!(in.depth[i] > S(0))) continue;
+            point_[count] = begin + i;
+            place_[count++] = Vec3<S>(x.x[i], x.y[i], x.z[i]);
+            deepest = (std::max)(deepest, in.depth[i]);
+          }
+        });
+    Status status = tracker_.update({point_.data(), count}, [&](std::size_t i) { return place_[i]; });
     if (count == 0) return Status::ok;
-    const Vec3<S> centre_of_mass = X * tool.centre_of_mass();
-    const auto slot_of = tracker_.slot_of();
-    for (std::size_t i = 0; i < count; ++i) {
-      const auto& [x, in] = touch_[i];
-      const S area = tool.area(point_[i]);
-      const S f = Sharing::weight(area, tool.contact_area()) * force.force(in.depth);
-      sums[slot_of[i]].add(x, x - centre_of_mass, in.gradient, in.depth, f, area);
+    std::uint64_t met = 0;  // slots, as bits
+    std::size_t next = 0;   // touching point
+    for (std::size_t k = 0; k < leaves; ++k) {
+      Leaf& leaf = leaf_[k];
+      for (; next < count && point_[next] < leaf.begin + lanes; ++next)
+        leaf.slots |= std::uint64_t(1) << tracker_.slot_of()[next];
+      met |= leaf.slots;
     }
-    for (RegionSum<S>& sum : sums) {
-      if (sum.points > 0) sum.scale(Sharing::norm(static_cast<S>(sum.points)));
+    const Vec3<S> centre_of_mass = X * tool.centre_of_mass();
+    for (std::size_t slot = 0; slot < N; ++slot) {
+      const std::uint64_t bit = std::uint64_t(1) << slot;
+      if ((met & bit) == 0) continue;
+      LaneSum<S> sum(centre_of_mass);
+      next = 0;
+      for (std::size_t k = 0; k < leaves; ++k) {
+        const Leaf& leaf = leaf_[k];
+        if (leaf.slots == bit) detail::add_leaf<Sharing>(tool, force, leaf.begin, leaf.x, leaf.in, sum);
+        if (leaf.slots == bit || (leaf.slots & bit) == 0) continue;
+        PenetrationLanes<S> own = leaf.in;
+        for (std::uint32_t i = 0; i < lanes; ++i) {
+          while (next < count && point_[next] < leaf.begin + i) ++next;
+          if (next == count || point_[next] != leaf.begin + i || tracker_.slot_of()[next] != slot)
+            own.depth[i] = S(0);
+        }
+        detail::add_leaf<Sharing>(tool, force, leaf.begin, leaf.x, own, sum);
+      }
+      sums[slot] = sum.total();
+      sums[slot].scale(Sharing::norm(static_cast<S>(sums[slot].points)));
     }
     return status | Status::contact | detail::depth_status(object, force, deepest);
   }
@@ -162,14 +203,18 @@ class Collector<Regions<N, Sharing>, S> {
   void reset() noexcept { tracker_.reset(); }
 
  private:
-  struct Touch {
-    Vec3<S> x;
-    Penetration<S> in;
+  static constexpr std::uint32_t lanes = PointLanes<S>::size;
+  struct Leaf {
+    std::uint32_t begin;
+    std::uint64_t slots;  // of its touching points, as bits
+    PointLanes<S> x;
+    PenetrationLanes<S> in;
   };
 
   RegionTracker<S, N> tracker_;
-  std::vector<std::uint32_t> point_;  // touching tool points of this tick
-  std::vector<Touch> touch_;
+  std::vector<Leaf> leaf_;            // of this tick, those with touching points
+  std::vector<std::uint32_t> point_;  // touching tool points of this tick, in order
+  std::vector<Vec3<S>> place_;        // where they are
 };
 
 }  // namespace palpate

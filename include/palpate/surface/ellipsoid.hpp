@@ -6,6 +6,10 @@
 #include <palpate/surface/lattice_mesh.hpp>
 #include <palpate/surface/shape_tools.hpp>
 
+#include <bit>
+#include <cstdint>
+#include <type_traits>
+
 namespace palpate {
 
 /// Ellipsoid sum_i ((x_i - m_i) / a_i)^2 = 1, axes along the object's.
@@ -51,6 +55,7 @@ class Ellipsoid {
       slope_[i] = min_ / a;
       inverse_[i] = S(1) / a;
     }
+    inverse_min_ = S(1) / min_;
     // Stands for 0 along the smallest axis, where it picks the + side; its square is still a normal number.
     tie_[smallest] = sizeof(S) == sizeof(float) ? S(1e-18L) : S(1e-150L);
   }
@@ -90,8 +95,9 @@ class Ellipsoid {
   void penetration(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
     constexpr int N = PointLanes<S>::size;
     S error[N];
-    near_surface<N>(x.x.data(), x.y.data(), x.z.data(), in.depth.data(), in.gradient_x.data(), in.gradient_y.data(),
-                    in.gradient_z.data(), error);
+    if (near_surface<N>(x.x.data(), x.y.data(), x.z.data(), in.depth.data(), in.gradient_x.data(),
+                        in.gradient_y.data(), in.gradient_z.data(), error))
+      return;
     for (std::size_t i = 0; i < N; ++i) {
       if (error[i] <= tolerance) continue;
       const Foot foot = solve(Vec3<S>(x.x[i], x.y[i], x.z[i]) - p_.centre);
@@ -115,8 +121,8 @@ class Ellipsoid {
     if (!is_finite(d) || !is_finite(r) || r < S(0)) return false;
     for (int i = 0; i < 3; ++i)
       if (std::abs(d[i]) > (p_.axes[i] + r) * detail::separation_guard<S>) return true;
-    const S g = d.cwiseQuotient(p_.axes).squaredNorm(),
-            grown = (S(1) + r / min_) * detail::separation_guard<S>;
+    const S g = d.cwiseProduct(inverse_).squaredNorm(),
+            grown = (S(1) + r * inverse_min_) * detail::separation_guard<S>;
     return is_finite(g) && g > grown * grown;
   }
 
@@ -185,12 +191,13 @@ class Ellipsoid {
     S distance;
   };
 
-  // Penetration of N points near the surface; loops without branches, which the compiler vectorises. `error` [-] of the
-  // foot is 0 outside, and large where a point is too deep for this: those are for solve().
+  // Penetration of N points near the surface; loops without branches, which the compiler vectorises. True: all are inside
+  // and settled. Otherwise `error` [-] of the foot is 0 outside, and large where a point is too deep for this: those are
+  // for solve().
   // As solve() with s = w - 1 and q_i = z_i / (1 + s j_i), j_i = (a_min / a_i)^2; but the first step needs no division
   // by 1 + s j_i, and after the second the change of q is small enough for three terms of its series.
   template <int N>
-  void near_surface(const S* PALPATE_RESTRICT x, const S* PALPATE_RESTRICT y, const S* PALPATE_RESTRICT z,
+  bool near_surface(const S* PALPATE_RESTRICT x, const S* PALPATE_RESTRICT y, const S* PALPATE_RESTRICT z,
                     S* PALPATE_RESTRICT depth, S* PALPATE_RESTRICT nx, S* PALPATE_RESTRICT ny, S* PALPATE_RESTRICT nz,
                     S* PALPATE_RESTRICT error) const noexcept {
     const S cx = p_.centre.x(), cy = p_.centre.y(), cz = p_.centre.z();
@@ -206,6 +213,7 @@ class Ellipsoid {
       s[i] = step(G, zx[i] * zx[i], zy[i] * zy[i], zz[i] * zz[i], jx, jy, jz);
       square[i] = G;
     }
+    bool settled = false;
     for (int k = 0; k < 3; ++k) {
       for (int i = 0; i < N; ++i) {
         const S vx = S(1) / (S(1) + s[i] * jx), vy = S(1) / (S(1) + s[i] * jy), vz = S(1) / (S(1) + s[i] * jz);
@@ -219,6 +227,8 @@ class Ellipsoid {
         s[i] += change;
         error[i] = std::abs(qx[i] * qx[i] + qy[i] * qy[i] + qz[i] * qz[i] - S(1));
       }
+      settled = all_settled<N>(square, s, error);
+      if (settled) break;
       bool done = true;
       for (int i = 0; i < N; ++i) {
         if (outside(square[i])) error[i] = S(0);
@@ -233,7 +243,8 @@ class Ellipsoid {
       qz[i] *= bz;
       m[i] = qx[i] * qx[i] + qy[i] * qy[i] + qz[i] * qz[i];
     }
-    for (int i = 0; i < N; ++i) m[i] = std::sqrt(m[i]);  // apart: it may set errno, which stops vectorisation
+    Eigen::Map<Eigen::Array<S, N, 1>> length(m);
+    length = length.sqrt();  // Eigen's: std::sqrt may set errno, so a compiler takes it one by one
     for (int i = 0; i < N; ++i) {
       const S r = S(1) / m[i];
       depth[i] = -s[i] * scale * m[i];
@@ -241,9 +252,28 @@ class Ellipsoid {
       ny[i] = qy[i] * r;
       nz[i] = qz[i] * r;
     }
+    if (settled) return true;
     for (int i = 0; i < N; ++i) {
       if (outside(square[i])) depth[i] = nx[i] = ny[i] = nz[i] = S(0);
     }
+    return false;
+  }
+
+  // 1/4 < square < 1, s > -3/4 and error <= tolerance for all; by the bits, because a loop that gathers the results of
+  // comparisons of reals is not vectorised. For reals >= 0 (and NaN last) bits are in the order of the values, so the
+  // sign of a difference is the answer.
+  template <int N>
+  [[nodiscard]] static bool all_settled(const S* square, const S* s, const S* error) noexcept {
+    using Bits = std::conditional_t<sizeof(S) == 4, std::uint32_t, std::uint64_t>;
+    constexpr Bits one = std::bit_cast<Bits>(S(1)), quarter = std::bit_cast<Bits>(S(0.25)),
+                   most = std::bit_cast<Bits>(tolerance);
+    Bits wrong = 0;
+    for (int i = 0; i < N; ++i) {
+      const Bits g = std::bit_cast<Bits>(square[i]);
+      wrong |= (one - 1 - g) | (g - quarter - 1) | (most - std::bit_cast<Bits>(error[i])) |
+               std::bit_cast<Bits>(S(0.75) + s[i]);
+    }
+    return (wrong >> (8 * sizeof(S) - 1)) == 0;
   }
 
   [[nodiscard]] static bool outside(S square) noexcept { return !is_finite(square) || !(square < S(1)); }
@@ -307,7 +337,7 @@ class Ellipsoid {
   Params p_;
   Vec3<S> ratio_, gap_, slope_, inverse_;  // (a_i / a_min)^2, that minus 1, a_min / a_i, 1 / a_i
   Vec3<S> tie_ = Vec3<S>::Zero();
-  S min_;
+  S min_, inverse_min_;
 };
 
 static_assert(ParametricSurface<Ellipsoid<float>> && ParametricSurface<Ellipsoid<double>>);

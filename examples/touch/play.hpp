@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  One scene played: felt on the device, its shape drawn beside the servo loop, and all of it written down.
+
+#include "povray.hpp"
+#include "session.hpp"
+
+namespace touch {
+
+inline constexpr std::size_t display_vertices = 5000;  ///< of exact surfaces
+inline constexpr std::size_t most_frames = 36;
+
+/// Object, tool, script and parameters.
+template <class Body, class Coupling = palpate::IndependentRegions>
+struct Scene {
+  std::string title;
+  Body body;
+  palpate::MeshData<S> display;  ///< the mesh that is drawn
+  std::string tool;
+  palpate::DuffingForce<S> force;
+  Coupling coupling;
+  View view;
+  Script (*script)(const Options&, const Body&, const Tool&);
+};
+
+/// One line per region and tick in contact. Without a shape w is 1.
+template <class Device>
+void write_contacts(const std::string& file, const Device& device, const Shape* shape) {
+  std::ofstream csv(file);
+  csv << "t_s,region,tool_x_m,F_x_N,F_y_N,F_z_N,force_N,D_m,area_m2,w,modified_D_m\n";
+  for (std::size_t i = 0; i < device.recorded(); ++i) {
+    const auto& r = device.recording()[i];
+    for (std::size_t j = 0; j < r.result.contacts.size(); ++j) {
+      const palpate::ContactState<S>& c = r.result.contacts[j];
+      const S w = shape != nullptr ? shape->factor(c) : 1, D = c.displacement.norm();
+      csv << r.t << ',' << c.id << ',' << r.pose.to_tool(c.centre).x() << ',' << c.force.x() << ',' << c.force.y() << ','
+          << c.force.z() << ',' << c.force.norm() << ',' << D << ',' << c.area << ',' << w << ',' << w * D << '\n';
+    }
+  }
+  std::printf("wrote          %s\n", file.c_str());
+}
+
+/// The largest change of the force from one tick to the next, and that at the ticks in which a region appears.
+template <class Device>
+void print_steps(const Device& device) {
+  double largest = 0, landing = 0;
+  for (std::size_t i = 1; i < device.recorded(); ++i) {
+    const Felt& before = device.recording()[i - 1].result;
+    const Felt& now = device.recording()[i].result;
+    const double step = (now.wrench.force - before.wrench.force).norm();
+    largest = (std::max)(largest, step);
+    if (now.regions > before.regions) landing = (std::max)(landing, step);
+  }
+  std::printf("force step     %.4f N in a tick at most; %.4f N where a region appears\n", largest, landing);
+}
+
+/// Plays the scene as options.shape and options.stepped say; results go into options.out.
+template <class Body, class Coupling>
+int play(Options options, const Scene<Body, Coupling>& scene) {
+  options.tool = scene.tool;
+  std::filesystem::create_directories(options.out);
+  std::filesystem::remove_all(options.out + "/frames");  // those of an earlier run
+  const Tool tool = make_tool(options);
+  const Script script = scene.script(options, scene.body, tool);
+  Feel<Contact<Body, Coupling>> feel{make_contact(scene.body, tool, scene.force, scene.coupling)};
+  std::optional<Shape> shape;
+  if (options.shape != "none") shape.emplace(make_shape(options.shape, scene.body, scene.display));
+
+  // Frames from first contact on, at even distances of the updates.
+  constexpr double begin = 1.0;
+  const auto stride = static_cast<std::size_t>(std::ceil((script.seconds - begin) * update_rate / most_frames));
+  std::size_t updates = 0;
+  std::vector<Frame> frames;
+  const auto update = [&](const auto& record) {
+    if (!shape) return;
+    shape->update(record.result);
+    if (record.t >= begin && updates++ % stride == 0) frames.push_back(shape->frame(record.t, record.pose, record.result));
+  };
+  const V top = scene.body.raycast(V(0, 1, 0), -V::UnitY()).position;
+  return perform(options, feel, tool, script, top, scene.title, update, [&](const auto& device) {
+    print_steps(device);
+    write_contacts(options.out + "/contacts.csv", device, shape ? &*shape : nullptr);
+    if (!shape) return;
+    std::printf("shape          %s, %zu vertices, %zu updates that moved something, %.0f us each\n", options.shape.c_str(),
+                shape->rest().vertices.size(), shape->updates(), 1e6 * shape->mean_time());
+    write_series(options.out, "shape", shape->rest(), frames);
+    Pictures(options.out + "/frames", scene.view, shape->rest(), tool).write(scene.title, frames);
+    std::printf("wrote          %s/shape.pvd, %zu frames\n", options.out.c_str(), frames.size());
+  });
+}
+
+}  // namespace touch
