@@ -24,7 +24,7 @@ template <class Body>
   const V half = 500 * (body.upper() - body.lower());
   const double size = half.norm();
   const V at(0, 0.55 * half.y(), 0);
-  return {.from = at + size * V(0.85, 1.7, 3.7), .at = at, .angle = 34, .per_newton = 0.2 * size};
+  return {.from = at + size * V(0.85, 1.7, 3.7), .at = at, .angle = 34, .per_newton = std::round(0.2 * size)};
 }
 
 /// Colours of the displacement from none to most; for POV-Ray and for the legend.
