@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  What an absent policy and an idle phase save: `bench_skip COMPOSITION PHASE TICKS` runs that many ticks and
-/// prints scene, composition, bytes of the solver, heap allocations and a checksum of the forces. bench/skip/run counts its instructions
-/// with callgrind, exactly, as the difference between two numbers of ticks.
+/// @file  What an absent policy and an idle phase save. Compiled once with each COMPOSITION=name, so that the program's size is
+/// that composition's: `palpate_bench_skip_NAME PHASE TICKS` runs that many ticks and prints scene, composition, bytes of solver
+/// and deformation model, heap allocations and a checksum. bench/skip/run counts its instructions with callgrind, exactly, as
+/// the difference between two numbers of ticks.
 
 #include <palpate/palpate.hpp>
 
@@ -16,58 +17,187 @@
 namespace {
 
 using namespace palpate;
-using S = double;
 
-const DuffingForce<S> law({.c1 = 40, .c3 = 3e8});
-const PowerLawFriction<S> fibre({.K = 0.562, .beta = 0.75, .mu_dynamic = 0.3});
-const Ellipsoid<S> body({.axes = Vec3<S>(0.06, 0.04, 0.04)});
+// Templates, so that a composition that is not asked for is not compiled.
+template <class S>
+struct Parts {
+  using Body = Ellipsoid<S>;
+  using Law = DuffingForce<S>;
+  using Fibre = PowerLawFriction<S>;
+  using Beams = Skeleton<S>;
+  using Shape = BeamSkeletonDeformation<RegionSkeletons<Beams>, PhongInterpolation<S>>;
 
-ToolPoints<S> face() {  // 10 x 10 points 1 mm apart
-  std::vector<Vec3<S>> points;
-  for (int i = 0; i < 100; ++i) points.emplace_back(1e-3 * (i % 10 - 4.5), 0, 1e-3 * (i / 10 - 4.5));
-  return ToolPoints<S>(points, std::vector<S>(100, 1e-6), {.contact_area = 1e-4});
+  static Body body() { return Body({.axes = Vec3<S>(S(0.06), S(0.04), S(0.04))}); }
+  static Law law() { return Law({.c1 = 40, .c3 = S(3e8)}); }
+  static Fibre fibre() { return Fibre({.K = S(0.562), .beta = S(0.75), .mu_dynamic = S(0.3)}); }
+  /// 10 x 10 points 1 mm apart; `gap` [m] more in the middle: two regions where it is above 0.5 mm.
+  static ToolPoints<S> face(S gap = 0) {
+    std::vector<Vec3<S>> points;
+    for (int i = 0; i < 100; ++i) {
+      const S apart = i % 10 < 5 ? -gap / 2 : gap / 2;
+      points.emplace_back(S(1e-3) * (S(i % 10) - S(4.5)) + apart, S(0), S(1e-3) * (S(i / 10) - S(4.5)));
+    }
+    return ToolPoints<S>(points, std::vector<S>(100, S(1e-6)), {.contact_area = S(1e-4)});
+  }
+  static RegionSkeletons<Beams> beams() {
+    std::vector<Vec3<S>> ends;
+    for (const auto& end : extremal_points(body())) ends.push_back(end.position);
+    return RegionSkeletons<Beams>(
+        Beams(ends, EulerBernoulli<double>(IsotropicElasticity<double>({.E = 1e5, .nu = 0.5})),
+              VolumePreserving<double>({.volume = double(body().volume())})));
+  }
+  static Shape shape(bool normals) {
+    const MeshData<S> mesh = body().mesh(2000);
+    return Shape(beams(), PhongInterpolation<S>(make_partition(body(), mesh)), AreaNeighbourhood<S>({}), mesh,
+                 {.fixed = Vec3<S>(S(0), S(-0.04), S(0)), .normals = normals});
+  }
+};
+
+struct Nothing {  // moves the tool, and no more
+  using Scalar = double;
+  double tick(const Pose<double>& X) noexcept { return X.translation.y(); }
+};
+template <class Solver>
+double force(Solver& solver, const Pose<double>& X) {
+  if constexpr (std::is_same_v<Solver, Nothing>)
+    return solver.tick(X);
+  else
+    return solver.tick(X).wrench.force.y();
 }
 
-template <class Solver>
-int run(const char* composition, const char* phase, long ticks, Solver solver) {
+/// A solver, and a deformation model that writes into a buffer; NoDeformation where the scene has no picture.
+template <class Solver, class Shape = NoDeformation<double>>
+struct Scene {
+  Solver solver;
+  Shape shape{};
+  std::vector<float> positions{}, normals{};
+
+  static constexpr std::size_t state_bytes = sizeof(Solver) + (Shape::active ? sizeof(Shape) : 0);
+
+  void begin([[maybe_unused]] bool with_normals) {
+    if constexpr (Shape::active) {
+      positions.resize(3 * shape.field().partition().size());
+      if (with_normals) normals.resize(positions.size());
+      shape.write_rest(buffer());
+    }
+  }
+  double tick(const Pose<double>& X) noexcept {
+    double sum = force(solver, X);
+    if constexpr (Shape::active) sum += double(shape.write(solver.contacts(), buffer()).vertices);
+    return sum;
+  }
+  VertexBuffer<float> buffer() noexcept {
+    return {.positions = positions.data(), .normals = normals.empty() ? nullptr : normals.data()};
+  }
+};
+
+using None = Frictionless<double>;
+
+struct none {
+  template <class S>
+  static auto make() {
+    return Scene<Nothing>{{}};
+  }
+};
+struct point {
+  template <class S, class P = Parts<S>>
+  static auto make() {
+    return Scene<ContactSolver<typename P::Body, typename P::Law>>{
+        ContactSolver<typename P::Body, typename P::Law>({P::body(), {}, P::law()})};
+  }
+};
+template <class S, class Friction, class Contacts, class Acting = AtContact,
+          class Coupling = IndependentRegions>
+using Solver =
+    ContactSolver<typename Parts<S>::Body, typename Parts<S>::Law, Friction, Contacts, Acting, Coupling>;
+struct point_at_mass_centre {
+  template <class S, class P = Parts<S>>
+  static auto make() {
+    using T = Solver<S, typename P::Fibre, SinglePoint, AtMassCentre>;
+    return Scene<T>{T({P::body(), {}, P::law(), P::fibre()})};
+  }
+};
+struct point_friction {
+  template <class S, class P = Parts<S>>
+  static auto make() {
+    using T = Solver<S, typename P::Fibre, SinglePoint>;
+    return Scene<T>{T({P::body(), {}, P::law(), P::fibre()})};
+  }
+};
+struct region {
+  template <class S, class P = Parts<S>>
+  static auto make() {
+    using T = Solver<S, None, SingleRegion<>>;
+    return Scene<T>{T({P::body(), P::face(), P::law()})};
+  }
+};
+struct region_friction {
+  template <class S, class P = Parts<S>>
+  static auto make() {
+    using T = Solver<S, typename P::Fibre, SingleRegion<>>;
+    return Scene<T>{T({P::body(), P::face(), P::law(), P::fibre()})};
+  }
+};
+template <class S>
+using Several = Solver<S, typename Parts<S>::Fibre, Regions<8>>;
+struct regions_friction {
+  template <class S, class P = Parts<S>>
+  static auto make() {
+    using T = Several<S>;
+    return Scene<T>{T({P::body(), P::face(S(1e-3)), P::law(), P::fibre(), {1.5e-3}})};
+  }
+};
+struct regions_coupled {
+  template <class S, class P = Parts<S>>
+  static auto make() {
+    using T = Solver<S, typename P::Fibre, Regions<8>, AtContact, RegionSkeletons<typename P::Beams>>;
+    return Scene<T>{T({P::body(), P::face(S(1e-3)), P::law(), P::fibre(), {1.5e-3}, P::beams()})};
+  }
+};
+struct regions_shape {
+  template <class S, class P = Parts<S>>
+  static auto make() {
+    using T = Several<S>;
+    return Scene<T, typename P::Shape>{T({P::body(), P::face(S(1e-3)), P::law(), P::fibre(), {1.5e-3}}),
+                                       P::shape(false)};
+  }
+};
+struct regions_shape_normals {
+  template <class S, class P = Parts<S>>
+  static auto make() {
+    using T = Several<S>;
+    return Scene<T, typename P::Shape>{T({P::body(), P::face(S(1e-3)), P::law(), P::fibre(), {1.5e-3}}),
+                                       P::shape(true)};
+  }
+};
+
+template <class Composition>
+int run(const char* composition, const char* phase, long ticks) {
   const bool contact = std::strcmp(phase, "contact") == 0;
   const bool resting = std::strcmp(phase, "nothing_moved") == 0;
   if (!contact && !resting && std::strcmp(phase, "out_of_reach") != 0) return 2;
+  auto scene = Composition::template make<double>();
+  scene.begin(std::is_same_v<Composition, regions_shape_normals>);
   double sum = 0;
   const palpate::test::HeapCount heap;
-  Pose<S> X;
+  Pose<double> X;
   for (long i = 0; i < ticks; ++i) {
-    const S x = resting ? 0 : 1e-5 * static_cast<S>(i % 100);
-    X.translation = Vec3<S>(x, contact || resting ? 0.038 : 0.2, 0);
-    sum += solver.tick(X).wrench.force.y();
+    const double x = resting ? 0 : 1e-5 * static_cast<double>(i % 100);
+    X.translation = Vec3<double>(x, contact || resting ? 0.038 : 0.2, 0);
+    sum += scene.tick(X);
   }
-  std::printf("%s,%s,%zu,%zu,%.12g\n", phase, composition, sizeof(Solver), heap.allocations(), sum);
+  std::printf("%s,%s,%zu,%zu,%.12g\n", phase, composition, scene.state_bytes, heap.allocations(), sum);
   return 0;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 4) {
-    std::fprintf(stderr, "usage: bench_skip point|point_friction|region|region_friction|regions_friction "
-                         "contact|nothing_moved|out_of_reach TICKS\n");
+  if (argc != 3) {
+    std::fprintf(stderr, "usage: %s contact|nothing_moved|out_of_reach TICKS\n", argv[0]);
     return 2;
   }
-  const char* composition = argv[1];
-  const char* phase = argv[2];
-  const long ticks = std::atol(argv[3]);
-  const auto is = [&](const char* name) { return std::strcmp(composition, name) == 0; };
-  using Body = Ellipsoid<S>;
-  using Law = DuffingForce<S>;
-  using Fibre = PowerLawFriction<S>;
-  if (is("point")) return run(composition, phase, ticks, ContactSolver<Body, Law>({body, {}, law, {}, {}}));
-  if (is("point_friction")) return run(composition, phase, ticks, ContactSolver<Body, Law, Fibre>({body, {}, law, fibre, {}}));
-  if (is("region"))
-    return run(composition, phase, ticks,
-               ContactSolver<Body, Law, Frictionless<S>, SingleRegion<>>({body, face(), law, {}, {}}));
-  if (is("region_friction"))
-    return run(composition, phase, ticks, ContactSolver<Body, Law, Fibre, SingleRegion<>>({body, face(), law, fibre, {}}));
-  if (is("regions_friction"))
-    return run(composition, phase, ticks, ContactSolver<Body, Law, Fibre, Regions<8>>({body, face(), law, fibre, {1.5e-3}}));
-  return 2;
+#define NAME_OF(composition) #composition
+#define NAME(composition) NAME_OF(composition)
+  return run<COMPOSITION>(NAME(COMPOSITION), argv[1], std::atol(argv[2]));
 }

@@ -6,82 +6,16 @@
 ///
 /// CASE_DIR holds meta.json, surface.obj(.gz) and vertices.csv(.gz). Prints set-up time and sizes.
 
+#include "truth/case.hpp"
+
 #include <palpate/response/response_contact.hpp>
 
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <fstream>
-#include <sstream>
 #include <string>
 
-namespace {
-
-using V = palpate::Vec3<double>;
-
-// The file's text; gzip does the unpacking.
-std::string read_text(const std::string& path) {
-  std::ifstream plain(path);
-  if (plain) {
-    std::ostringstream all;
-    all << plain.rdbuf();
-    return all.str();
-  }
-  std::string text;
-  FILE* pipe = popen(("gzip -dc '" + path + ".gz'").c_str(), "r");
-  if (pipe == nullptr) return text;
-  char buffer[65536];
-  for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) text.append(buffer, n);
-  pclose(pipe);
-  return text;
-}
-
-// The numbers after the next `key` from `from`: enough JSON for these files.
-std::vector<double> numbers(const std::string& json, const char* key, std::size_t from = 0, std::size_t to = std::string::npos) {
-  std::vector<double> out;
-  const std::size_t at = json.find('"' + std::string(key) + '"', from);
-  if (at == std::string::npos || at > to) return out;
-  const char* p = json.c_str() + json.find(':', at) + 1;
-  int depth = 0;
-  for (; *p != '\0'; ++p) {
-    if (*p == '[') ++depth;
-    else if (*p == ']') { if (--depth <= 0) break; }
-    else if (std::strchr("-0123456789", *p) != nullptr) {
-      char* end = nullptr;
-      out.push_back(std::strtod(p, &end));
-      p = end - 1;
-      if (depth == 0) break;
-    } else if (depth == 0 && (*p == ',' || *p == '}' || *p == '{')) break;
-  }
-  return out;
-}
-V vector(const std::vector<double>& v) { return {v.at(0), v.at(1), v.at(2)}; }
-
-palpate::MeshData<double> read_obj(const std::string& text) {
-  palpate::MeshData<double> mesh;
-  std::istringstream in(text);
-  for (std::string line; std::getline(in, line);) {
-    std::istringstream words(line);
-    std::string head, word;
-    words >> head;
-    if (head == "v") {
-      V p;
-      words >> p.x() >> p.y() >> p.z();
-      mesh.vertices.push_back(p);
-    } else if (head == "f") {
-      std::array<std::uint32_t, 3> t{};
-      for (auto& c : t) {
-        words >> word;
-        c = static_cast<std::uint32_t>(std::strtoul(word.c_str(), nullptr, 10) - 1);
-      }
-      mesh.triangles.push_back(t);
-    }
-  }
-  return mesh;
-}
-
-}  // namespace
+using namespace bench;
 
 int main(int argc, char** argv) {
   if (argc < 4) {
@@ -101,20 +35,13 @@ int main(int argc, char** argv) {
   const palpate::ResponseField field(mesh, [&](const V& p) { return p.y() <= y_fixed; }, params);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count();
   std::printf("%s: %zu solve vertices, %zu touchable nodes, %.1f MB, set-up %.2f s\n", argv[1], field.mesh().vertices.size(),
-              field.touchable(), double(field.memory()) / 1e6, seconds);
+              field.touch().nodes().size(), double(field.memory()) / 1e6, seconds);
   palpate::ResponseTick<4> tick(field, {.second_order = argc <= 5});
-  const palpate::ResponseDisplay display = field.bind(mesh.vertices);
+  const palpate::ResponseDisplay display(field, mesh.vertices);
 
+  const std::vector<Patch> patches = read_patches(meta);
   std::vector<palpate::ResponseContact<double>> contacts;
-  std::vector<double> factor;
-  std::vector<V> direction;
-  const std::size_t patches = meta.find("\"patches\"");
-  for (std::size_t at = patches; patches != std::string::npos && (at = meta.find("\"centre_m\"", at + 1)) != std::string::npos;) {
-    contacts.push_back({.place = vector(numbers(meta, "centre_m", at)), .normal = -vector(numbers(meta, "inward_normal", at)),
-                        .radius = numbers(meta, "radius_m", at).at(0)});
-    direction.push_back(vector(numbers(meta, "direction", at)));
-    factor.push_back(numbers(meta, "depth_factor", at).at(0));
-  }
+  for (const Patch& patch : patches) contacts.push_back({.place = patch.place, .normal = patch.normal, .radius = patch.radius});
   FILE* displacement = std::fopen(argv[2], "w");
   FILE* force = std::fopen(argv[3], "w");
   std::fprintf(displacement, "depth_m,vertex,ux,uy,uz\n");
@@ -137,7 +64,7 @@ int main(int argc, char** argv) {
     }
   } else for (double depth : numbers(meta, "depths_m")) {
     std::vector<V> F(contacts.size());
-    for (std::size_t c = 0; c < contacts.size(); ++c) contacts[c].displacement = depth * factor[c] * direction[c];
+    for (std::size_t c = 0; c < contacts.size(); ++c) contacts[c].displacement = depth * patches[c].factor * patches[c].direction;
     tick.solve(contacts.data(), contacts.size(), F.data());
     tick.displace(display, u.data(), 3);
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v)

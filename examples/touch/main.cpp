@@ -17,7 +17,7 @@ using namespace palpate;
 template <class Body>
 int run(Options options, const Body& body, MeshData<S> display, const char* shape) {
   if (options.shape.empty()) options.shape = shape;
-  return play(options, Scene<Body>{.title = "object " + options.object + ", tool " + options.tool + ", script " + options.script,
+  return play(options, Scene<Body>{.title = "object " + std::filesystem::path(options.object).stem().string() + ", tool " + options.tool + ", script " + options.script,
                                    .body = body,
                                    .display = std::move(display),
                                    .tool = options.tool,

@@ -17,10 +17,11 @@ struct Options {
   std::string script = "figure10";
   std::string out = "out";
   std::string scene;    ///< empty: none
-  std::string shape;    ///< none, skeleton or response; empty: what suits the object
+  std::string shape;    ///< none, skeleton, half-space or response; empty: what suits the object
   double scale = 1;     ///< of mesh files
   char up = 'y';        ///< of mesh files
   bool repair = false;  ///< of mesh files
+  double at_x = 0, at_z = 0;  ///< where the scripts work [m]
   double rate = 1000;   ///< [Hz]
   bool stepped = false;
   bool real_time = false;  ///< of a scene
@@ -39,7 +40,8 @@ inline constexpr const char* usage =
   --up AXIS       the files' axis that points up: x, y (default) or z
   --repair        weld, turn and drop in the files what is plainly wrong, and say so
   --script NAME   figure10 (default), press, slide
-  --shape MODEL   how the object deforms: skeleton, response, or none. Exact surfaces: skeleton; files: response
+  --at X Z        where press and slide work, in metres from the object's middle (default 0 0)
+  --shape MODEL   how the object deforms: skeleton, half-space, response, or none. Default: skeleton; of files response
   --rate HZ       servo rate asked of the device (default 1000)
   --stepped       simulated time instead of real time: same bits in every run (stand-in device only)
   --out FOLDER    where the results go (default out)
@@ -69,6 +71,13 @@ inline Options parse(int argc, char** argv) {
       if (end == text.c_str() || *end != '\0' || !(x > 0)) refuse(name + " needs a number > 0, got " + text);
       return x;
     };
+    const auto place = [&] {
+      const std::string text = value();
+      char* end = nullptr;
+      const double x = std::strtod(text.c_str(), &end);
+      if (end == text.c_str() || *end != '\0' || !(x > -1e3 && x < 1e3)) refuse(name + " needs two numbers, got " + text);
+      return x;
+    };
     const auto axis = [&](const std::string& text) {
       if (text != "x" && text != "y" && text != "z") refuse(name + " needs x, y or z, got " + text);
       return text.front();
@@ -79,6 +88,7 @@ inline Options parse(int argc, char** argv) {
     else if (name == "--up") options.up = axis(value());
     else if (name == "--repair") options.repair = true;
     else if (name == "--script") options.script = value();
+    else if (name == "--at") options.at_x = place(), options.at_z = place();
     else if (name == "--out") options.out = value();
     else if (name == "--scale") options.scale = number();
     else if (name == "--rate") options.rate = number();

@@ -76,14 +76,15 @@ Script make_script(const Options& options, const Body& body, const palpate::Mesh
     return table(5.0, [=](double t) {
               const double s = t < free ? 0 : t - free;
               const double wave = 0.5 * (1 - std::cos(6.283185307179586 * s / 1.2));
-              return over(0, 0, hover - (hover + press * (0.4 + 0.2 * std::floor(s / 1.2))) * wave);
+              return over(options.at_x, options.at_z, hover - (hover + press * (0.4 + 0.2 * std::floor(s / 1.2))) * wave);
             });
   }
   if (options.script == "slide") {  // to and fro across the top
     return table(8.0, [=](double t) {
               const double down = smooth_step(t, free, free + 0.6) - smooth_step(t, 7.2, 7.8);
               const double s = t < free + 0.6 ? 0 : t - free - 0.6;
-              return over(reach * std::sin(6.283185307179586 * s / 2.5), 0.2 * reach * std::sin(6.283185307179586 * s / 4.1),
+              return over(options.at_x + 0.5 * reach * std::sin(6.283185307179586 * s / 2.5),
+                          options.at_z + 0.2 * reach * std::sin(6.283185307179586 * s / 4.1),
                           hover - (hover + press) * down);
             });
   }

@@ -5,7 +5,10 @@
 /// deformation model, and the frames that are kept of it.
 
 #include <palpate/deformation/beam_skeleton.hpp>
+#include <palpate/deformation/half_space.hpp>
+#include <palpate/deformation/response_field.hpp>
 #include <palpate/interpolation/phong.hpp>
+#include <palpate/surface/mesh_extremal_points.hpp>
 
 #include <chrono>
 #include <functional>
@@ -116,14 +119,32 @@ template <class Body>
   return Shape(std::move(mesh), std::move(model), neighbourhood);
 }
 
+/// Everything in the lowest tenth of the body is fixed, for the models that need a region.
+template <class Body>
+[[nodiscard]] auto bottom_region(const Body& body) {
+  const S top = body.lower().y() + S(0.1) * (body.upper().y() - body.lower().y());
+  return [top](const auto& place) { return place.y() <= top; };
+}
+
 /// By the model's name.
 template <class Body>
 [[nodiscard]] Shape make_shape(const std::string& model, const Body& body, const palpate::MeshData<S>& mesh) {
-  if (model == "skeleton") {
-    if constexpr (palpate::HasExtremalPoints<Body>) return skeleton_shape(body, mesh);
-    else refuse("the skeleton needs curvature extremal points, which meshes do not have yet; choose another shape");
+  if (model == "skeleton") return skeleton_shape(body, mesh);
+  if (model == "half-space")
+    return Shape(mesh, palpate::HalfSpaceDeformation<S>(mesh, bottom_region(body), {.nu = rubber.params().nu}));
+  if (model == "response") {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto field = std::make_shared<const palpate::ResponseField>(
+        mesh, bottom_region(body),
+        palpate::ResponseField::Params{.E = rubber.params().E, .nu = rubber.params().nu, .threads = 2, .progress = [](double done) {
+                                         std::printf("\rresponse field %3.0f %%", 100 * done);
+                                         std::fflush(stdout);
+                                       }});
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+    std::printf("\rresponse field of %zu solve vertices in %.1f s\n", field->mesh().vertices.size(), spent.count());
+    return Shape(mesh, palpate::ResponseFieldDeformation<S, most_regions>(field, mesh));
   }
-  refuse("unknown shape " + model + " (skeleton, response, none)");
+  refuse("unknown shape " + model + " (skeleton, half-space, response, none)");
 }
 
 }  // namespace touch

@@ -9,6 +9,7 @@
 /// |----------------------------------|--------------------------------|-----------------------------------------|
 /// | PALPATE_ASSERT(condition)        | assert()                       | on broken preconditions, debug builds   |
 /// | PALPATE_ON_SETUP_ERROR(message)  | write to stderr, then abort()  | without exceptions: bad input at set-up; must not return |
+/// | PALPATE_NO_THREADS               | not defined                    | defined: set-up uses no threads (response/parallel.hpp) |
 
 #if __has_include(<palpate_config.hpp>)
 #include <palpate_config.hpp>
@@ -28,6 +29,21 @@
 
 // A pointer through which alone its data are reached in this scope, so that loops over arrays vectorise.
 #define PALPATE_RESTRICT __restrict
+
+// Inlined whatever the optimiser thinks: its arguments are whole registers.
+#if defined(_MSC_VER)
+#define PALPATE_INLINE __forceinline
+#else
+#define PALPATE_INLINE inline __attribute__((always_inline))
+#endif
+
+// Everything called in this function becomes part of it at any level of optimisation: for loops over vector registers,
+// whose every operation is a function of Eigen's.
+#if defined(__GNUC__)
+#define PALPATE_FLATTEN [[gnu::flatten]]
+#else
+#define PALPATE_FLATTEN
+#endif
 
 #if defined(__cpp_exceptions) || defined(_CPPUNWIND)
 #define PALPATE_HAS_EXCEPTIONS 1

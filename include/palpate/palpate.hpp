@@ -2,7 +2,7 @@
 #pragma once
 
 /// @file  The paper's model in the order of the data flow. Beside it stand two that cost compile time: the response field,
-/// <palpate/response/response_contact.hpp>, and triangle meshes as elastic objects, <palpate/surface/mesh_surface.hpp>.
+/// <palpate/response/response_contact.hpp>, and the extremal points of a mesh, <palpate/surface/mesh_extremal_points.hpp>.
 /// Include single headers where compile time matters.
 
 // clang-format off
@@ -17,10 +17,14 @@
 #include <palpate/surface/cylinder.hpp>
 #include <palpate/surface/superellipsoid.hpp>
 #include <palpate/surface/triangle_mesh.hpp>
+#include <palpate/surface/mesh_surface.hpp>
+#include <palpate/surface/sampled_surface.hpp>
 #include <palpate/surface/extremal_points.hpp>
 
 // which points of the tool touch
 #include <palpate/detection/tool_points.hpp>
+#include <palpate/detection/deformed_surface.hpp>
+#include <palpate/detection/swept_pose.hpp>
 
 // touching points to regions
 #include <palpate/region/topology.hpp>

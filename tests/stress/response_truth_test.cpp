@@ -26,7 +26,7 @@ void check_reference(const ResponseField& field, const ResponseContact<double>& 
   std::vector<double> u(3 * N);
   V F;
   tick.solve(&contact, 1, &F);
-  tick.displace(field.bind(points), u.data(), 3);
+  tick.displace(ResponseDisplay(field, points), u.data(), 3);
   double error = 0, norm = 0;
   for (std::size_t i = 0; i < N; ++i) {
     const V exact(truth[i].u[0], truth[i].u[1], truth[i].u[2]);

@@ -6,6 +6,7 @@
 /// | shipped                      | shape                                            | use it when                           |
 /// |------------------------------|--------------------------------------------------|---------------------------------------|
 /// | `BeamSkeletonDeformation`    | the paper's (V, VI): skeleton, then interpolation | the paper's look at the least cost    |
+/// | `HalfSpaceDeformation`       | elastic, in closed form: half-spaces in series   | a plausible shape without any set-up  |
 /// | `NoDeformation`              | the undeformed one                               | absent: forces only                   |
 ///
 /// `DisplacementField` is the output stage that models share: displacements of corners to vertices in your buffer.
@@ -17,6 +18,7 @@
 
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <span>
 
@@ -43,14 +45,19 @@ struct Moved {
 };
 
 namespace detail {
-template <Real T, class S>
-inline void store3(T* base, std::size_t stride, std::size_t vertex, S x, S y, S z) noexcept {
-  unsigned char* const at = reinterpret_cast<unsigned char*>(base) + stride * vertex;
-  const T tx = static_cast<T>(x), ty = static_cast<T>(y), tz = static_cast<T>(z);
-  std::memcpy(at, &tx,
-              sizeof(T));  // one by one: gathered on the stack first, the copy would wait for the stores
-  std::memcpy(at + sizeof(T), &ty, sizeof(T));
-  std::memcpy(at + 2 * sizeof(T), &tz, sizeof(T));
+/// Writes x[i], y[i], z[i] to vertex number vertex(i), for all i < count.
+template <Real T, class S, class Vertex>
+inline void store3(T* to, std::size_t stride, std::size_t count, const Vertex& vertex, const S* x, const S* y,
+                   const S* z) noexcept {
+  unsigned char* const base = reinterpret_cast<unsigned char*>(to);
+  for (std::size_t i = 0; i < count; ++i) {
+    unsigned char* const at = base + stride * vertex(i);
+    const T tx = static_cast<T>(x[i]), ty = static_cast<T>(y[i]), tz = static_cast<T>(z[i]);
+    std::memcpy(at, &tx,
+                sizeof(T));  // one by one: gathered on the stack first, the copy would wait for the stores
+    std::memcpy(at + sizeof(T), &ty, sizeof(T));
+    std::memcpy(at + 2 * sizeof(T), &tz, sizeof(T));
+  }
 }
 }  // namespace detail
 

@@ -53,7 +53,6 @@ class DisplacementField {
     contacts_.reserve(p_.contacts);
     corners_.reserve(p_.contacts * partition.points().size());
     dirty_.assign(partition.faces().size(), 1);
-    position_.resize(partition.size());
     if (p_.normals) set_up_normals(mesh);
     forget();
   }
@@ -63,11 +62,12 @@ class DisplacementField {
   void write_rest(const VertexBuffer<T>& out) noexcept {
     forget();
     const auto order = partition().order();
-    for (std::size_t slot = 0; slot < partition().size(); ++slot) {
-      const CyclicPoint<S>& x = position_[slot];
-      detail::store3(out.positions, out.position_stride, order[slot], x[0], x[1], x[2]);
-      if (p_.normals && out.normals != nullptr) store_normal(slot, out);
-    }
+    detail::store3(
+        out.positions, out.position_stride, order.size(), [order](std::size_t i) { return order[i]; },
+        partition().rest(0), partition().rest(1), partition().rest(2));
+    if (!p_.normals || out.normals == nullptr) return;
+    std::fill(dirty_.begin(), dirty_.end(), std::uint8_t{1});
+    write_normals(out);
   }
 
   /// Writes the shape under `contacts`. `corners` holds the displacements u_i [m] that each contact causes at the
@@ -92,11 +92,9 @@ class DisplacementField {
       moved.vertices += face.count;
     }
     if (moved.vertices > 0) {
-      for (int axis = 0; axis < 3; ++axis) {
-        moved.lower[axis] =
-            *std::min_element(extent.lower[axis].value, extent.lower[axis].value + block_size);
-        moved.upper[axis] =
-            *std::max_element(extent.upper[axis].value, extent.upper[axis].value + block_size);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        moved.lower[static_cast<int>(axis)] = extent.lower[axis].minCoeff();
+        moved.upper[static_cast<int>(axis)] = extent.upper[axis].maxCoeff();
       }
       if (p_.normals && out.normals != nullptr) write_normals(out);
     }
@@ -113,15 +111,23 @@ class DisplacementField {
  private:
   using Load = typename I::Load;
 
-  struct Extent {  // extremes of each place in a block
-    Block<S> lower[3], upper[3];
+  using Lanes = detail::Lanes<S>;
+
+  struct Extent {  // extremes of each lane
+    std::array<Lanes, 3> lower, upper;
     Extent() noexcept {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        for (std::size_t i = 0; i < block_size; ++i) {
-          lower[axis][i] = (std::numeric_limits<S>::max)();
-          upper[axis][i] = std::numeric_limits<S>::lowest();
-        }
+      lower.fill(Lanes::Constant((std::numeric_limits<S>::max)()));
+      upper.fill(Lanes::Constant(std::numeric_limits<S>::lowest()));
+    }
+    void take(std::size_t axis, const Block<S>& x) noexcept {
+      Lanes low = lower[axis], high = upper[axis];
+      for (std::size_t i = 0; i < block_size; i += detail::lanes<S>) {
+        const Lanes here = detail::load_lanes(x.value + i);
+        low = low.min(here);
+        high = high.max(here);
       }
+      lower[axis] = low;
+      upper[axis] = high;
     }
   };
 
@@ -158,22 +164,35 @@ class DisplacementField {
         v = slot_of[v];
       }
     }
-    normals_ = VertexNormals<S>(triangles, order.size());
+    std::vector<std::size_t> starts;
+    for (const Face<S>& face : partition().faces()) starts.push_back(face.first);
+    normals_ = VertexNormals<S>(triangles, order.size(), starts);
     for (std::uint32_t f = 0; f < dirty_.size(); ++f) {
       const Face<S>& face = partition().faces()[f];
       for (std::size_t slot = face.first; slot < face.first + face.count; ++slot) face_of[slot] = f;
     }
+    const std::span<const typename VertexNormals<S>::Run> runs = normals_.runs();
+    std::uint32_t run = 0;
     for (const Face<S>& face : partition().faces()) {
+      run_start_.push_back(run);
       rim_start_.push_back(rim_.size());
-      for (std::size_t slot = face.first; slot < face.first + face.count; ++slot) {
-        for (const std::uint32_t other : normals_.ring(slot)) {
-          if (other < face.first || other >= face.first + face.count) rim_.push_back({other, face_of[other]});
+      for (; run < runs.size() && runs[run].first < face.first + face.count; ++run) {
+        for (const std::uint32_t neighbour : normals_.ring(runs[run])) {
+          for (std::uint32_t i = 0; i < runs[run].count; ++i) {
+            const std::uint32_t other = neighbour + i;
+            if (other >= face.first && other < face.first + face.count) continue;
+            const auto after =
+                std::upper_bound(runs.begin(), runs.end(), other,
+                                 [](std::uint32_t slot, const auto& r) { return slot < r.first; });
+            rim_.push_back({other, face_of[other], static_cast<std::uint32_t>(after - runs.begin()) - 1});
+          }
         }
       }
       const auto begin = rim_.begin() + static_cast<std::ptrdiff_t>(rim_start_.back());
       std::sort(begin, rim_.end());
       rim_.erase(std::unique(begin, rim_.end()), rim_.end());
     }
+    run_start_.push_back(run);
     rim_start_.push_back(rim_.size());
   }
 
@@ -185,9 +204,10 @@ class DisplacementField {
     previous_count_ = 0;
     contacts_.clear();
     corners_.clear();
-    for (std::size_t slot = 0; slot < position_.size(); ++slot)
-      position_[slot] = {partition().rest(0)[slot], partition().rest(1)[slot], partition().rest(2)[slot],
-                         partition().rest(0)[slot], partition().rest(1)[slot]};
+    for (std::size_t axis = 0; axis < position_.size(); ++axis) {
+      const S* const rest = partition().rest(static_cast<int>(axis));
+      position_[axis].assign(rest, rest + partition().size() + VertexNormals<S>::padding);
+    }
   }
 
   // Keeps the input; false when it is the same as in the last tick.
@@ -224,72 +244,107 @@ class DisplacementField {
   }
 
   template <Real T>
-  void write_block(std::size_t f, std::size_t first, std::size_t count, Extent& extent,
-                   const VertexBuffer<T>& out) noexcept {
+  PALPATE_FLATTEN void write_block(std::size_t f, std::size_t first, std::size_t count, Extent& extent,
+                                   const VertexBuffer<T>& out) noexcept {
     const FacePartition<S>& part = partition();
-    Block<S> u[3], scale;
-    for (Block<S>& component : u) {
-      for (std::size_t i = 0; i < block_size; ++i) component[i] = S(0);
+    Block<S> x[3], scale;
+    for (int axis = 0; axis < 3; ++axis) {
+      const S* PALPATE_RESTRICT const rest = part.rest(axis) + first;
+      for (std::size_t i = 0; i < block_size; i += detail::lanes<S>)
+        detail::store_lanes(x[axis].value + i, detail::load_lanes(rest + i));
     }
     for (std::size_t c = 0; c < active_; ++c) {
       if (!interpolation_.moves(loads_[c], f)) continue;
       const bool dented = dents_[c].touches(part.faces()[f]);
       if (dented)
         dents_[c].scale(part.rest(0) + first, part.rest(1) + first, part.rest(2) + first, scale.value);
-      interpolation_.add(loads_[c], f, first, dented ? scale.value : nullptr, u[0].value, u[1].value,
-                         u[2].value);
+      interpolation_.add(loads_[c], f, first, dented ? scale.value : nullptr, x[0].value, x[1].value,
+                         x[2].value);
     }
-    for (int axis = 0; axis < 3; ++axis) {
-      const S* PALPATE_RESTRICT const rest = part.rest(axis) + first;
-      S* PALPATE_RESTRICT const x = u[axis].value;
-      for (std::size_t i = 0; i < block_size; ++i) x[i] += rest[i];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
       for (std::size_t i = count; i < block_size; ++i)
-        x[i] = x[0];  // not vertices of this block: no part in the box
-      S* PALPATE_RESTRICT const lower = extent.lower[axis].value;
-      S* PALPATE_RESTRICT const upper = extent.upper[axis].value;
-      for (std::size_t i = 0; i < block_size; ++i) {
-        lower[i] = x[i] < lower[i] ? x[i] : lower[i];
-        upper[i] = x[i] > upper[i] ? x[i] : upper[i];
-      }
+        x[axis][i] = x[axis][0];  // not vertices of this block: no part in the box
+      extent.take(axis, x[axis]);
     }
     const std::uint32_t* const vertex = part.order().data() + first;
-    for (std::size_t i = 0; i < count; ++i)
-      detail::store3(out.positions, out.position_stride, vertex[i], u[0][i], u[1][i], u[2][i]);
+    detail::store3(
+        out.positions, out.position_stride, count, [vertex](std::size_t i) { return vertex[i]; }, x[0].value,
+        x[1].value, x[2].value);
     if (!p_.normals) return;
-    for (std::size_t i = 0; i < count; ++i)
-      position_[first + i] = {u[0][i], u[1][i], u[2][i], u[0][i], u[1][i]};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      S* const now = position_[axis].data() + first;
+      std::size_t i = 0;
+      for (; i + detail::lanes<S> <= count; i += detail::lanes<S>)
+        detail::store_lanes<S>(now + i, detail::load_lanes(x[axis].value + i));
+      for (; i < count; ++i) now[i] = x[axis][i];
+    }
   }
 
+  struct NormalBlock {  // area vectors of up to block_size vertices, and their slots
+    Block<S> x{}, y{}, z{};
+    std::array<std::uint32_t, block_size> slot{};
+  };
+
   template <Real T>
-  void write_normals(const VertexBuffer<T>& out) const noexcept {
+  PALPATE_FLATTEN void write_normals(const VertexBuffer<T>& out) const noexcept {
+    constexpr std::size_t lanes = detail::lanes<S>;
+    NormalBlock block;
+    std::size_t filled = 0;
+    const auto add = [&](const typename VertexNormals<S>::Run& run, std::uint32_t offset, std::size_t count) {
+      if (filled + lanes > block_size) {
+        store_normals(block, filled, out);
+        filled = 0;
+      }
+      normals_.area(run, offset, position_[0].data(), position_[1].data(), position_[2].data(),
+                    block.x.value + filled, block.y.value + filled, block.z.value + filled);
+      const std::uint32_t first = run.first + offset;
+      for (std::uint32_t i = 0; i < lanes; ++i) block.slot[filled + i] = first + i;
+      filled += count;
+    };
     for (std::size_t f = 0; f < dirty_.size(); ++f) {
       if (!dirty_[f]) continue;
-      const Face<S>& face = partition().faces()[f];
-      for (std::size_t slot = face.first; slot < face.first + face.count; ++slot) store_normal(slot, out);
+      for (std::size_t r = run_start_[f]; r < run_start_[f + 1]; ++r)
+        add(normals_.runs()[r], 0, normals_.runs()[r].count);
       for (std::size_t k = rim_start_[f]; k < rim_start_[f + 1]; ++k) {
-        if (!dirty_[rim_[k].face]) store_normal(rim_[k].slot, out);
+        const auto& run = normals_.runs()[rim_[k].run];
+        if (!dirty_[rim_[k].face]) add(run, rim_[k].slot - run.first, 1);
       }
     }
+    store_normals(block, filled, out);
   }
 
+  // Area vectors to unit vectors in the caller's buffer.
   template <Real T>
-  void store_normal(std::size_t slot, const VertexBuffer<T>& out) const noexcept {
-    const Vec3<S> a = normals_.area(slot, position_.data());
-    const S square = a.squaredNorm();
-    const std::size_t vertex = partition().order()[slot];
-    if (square > (std::numeric_limits<S>::min)()) {
-      const S scale = S(1) / std::sqrt(square);
-      detail::store3(out.normals, out.normal_stride, vertex, a[0] * scale, a[1] * scale, a[2] * scale);
-    } else {  // collapsed: keep the undeformed normal
-      detail::store3(out.normals, out.normal_stride, vertex, partition().normal(0)[slot],
-                     partition().normal(1)[slot], partition().normal(2)[slot]);
+  void store_normals(NormalBlock& block, std::size_t count, const VertexBuffer<T>& out) const noexcept {
+    constexpr S tiny = (std::numeric_limits<S>::min)();
+    Block<S> square;
+    for (std::size_t i = 0; i < block_size; ++i)
+      square[i] = block.x[i] * block.x[i] + block.y[i] * block.y[i] + block.z[i] * block.z[i];
+    for (std::size_t i = 0; i < block_size; ++i) {
+      const S scale = detail::inverse_root(square[i]);
+      block.x[i] *= scale;
+      block.y[i] *= scale;
+      block.z[i] *= scale;
     }
+    for (std::size_t i = count; i < block_size; ++i) square[i] = S(1);
+    const bool collapsed = detail::least(square) <= tiny;
+    for (std::size_t i = 0; collapsed && i < count; ++i) {  // keep the undeformed normal
+      if (square[i] > tiny) continue;
+      block.x[i] = partition().normal(0)[block.slot[i]];
+      block.y[i] = partition().normal(1)[block.slot[i]];
+      block.z[i] = partition().normal(2)[block.slot[i]];
+    }
+    const std::uint32_t* const order = partition().order().data();
+    detail::store3(
+        out.normals, out.normal_stride, count,
+        [&block, order](std::size_t i) { return order[block.slot[i]]; }, block.x.value, block.y.value,
+        block.z.value);
   }
 
   static constexpr const char* name = "DisplacementField";
 
   struct RimVertex {  // a vertex of another face next to this one
-    std::uint32_t slot, face;
+    std::uint32_t slot, face, run;
     [[nodiscard]] auto operator<=>(const RimVertex&) const noexcept = default;
   };
 
@@ -298,13 +353,13 @@ class DisplacementField {
   PALPATE_NO_UNIQUE_ADDRESS N neighbourhood_;
   VertexNormals<S> normals_;
   std::vector<RimVertex> rim_;
-  std::vector<std::size_t> rim_start_;
+  std::vector<std::size_t> rim_start_, run_start_;
   std::vector<Load> loads_, previous_;
   std::vector<Dent> dents_, previous_dents_;
   std::vector<ContactDisplacement<S>> contacts_;
   std::vector<Vec3<S>> corners_;
   std::vector<std::uint8_t> dirty_;
-  std::vector<CyclicPoint<S>> position_;
+  std::array<std::vector<S>, 3> position_;  // with normals: of every slot, now
   std::size_t active_ = 0, previous_count_ = 0;
 };
 

@@ -4,21 +4,15 @@
 /// @file  Area-weighted vertex normals of a closed mesh whose vertices move.
 
 #include <palpate/core/error.hpp>
-#include <palpate/core/vector.hpp>
+#include <palpate/interpolation/partition.hpp>
 
+#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
 namespace palpate {
-
-/// x, y, z, x, y: from the first and from the second entry on, four numbers are one load, and a cross product needs no
-/// shuffles.
-template <Real S>
-using CyclicPoint = std::array<S, 5>;
 
 /// The ring of neighbours p_0 .. p_{m-1} of every vertex, counter-clockwise from outside. The area vectors of a
 /// vertex's triangles sum to that of its ring, a closed polygon, in which the vertex itself cancels. Cut into
@@ -29,13 +23,28 @@ using CyclicPoint = std::array<S, 5>;
 /// two cross products for six neighbours instead of six, and every product is of short vectors. No equation of the
 /// paper; elementary geometry.
 ///
+/// Up to a register's worth of neighbouring vertices whose rings are the same but for a shift by one are a run, and one
+/// calculation without gathering. In a mesh laid out in rows, as all meshes of this library are, most vertices are
+/// in full runs.
+///
 /// Set-up reports a mesh whose triangles do not close around every vertex.
 template <Real S>
 class VertexNormals {
  public:
+  static constexpr std::size_t lanes = detail::lanes<S>;
+  /// So many entries past the last vertex's coordinates are read, and not used.
+  static constexpr std::size_t padding = 32 / sizeof(S);
+
+  struct Run {
+    std::uint32_t first = 0, count = 0;  ///< vertices, up to `lanes`
+    std::uint32_t ring = 0, size = 0;    ///< of the first one: where its neighbours are listed, and how many
+  };
+
   VertexNormals() = default;
 
-  VertexNormals(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertices) {
+  /// No run goes on past a vertex of `starts`, which is in ascending order.
+  VertexNormals(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertices,
+                std::span<const std::size_t> starts = {}) {
     std::vector<std::vector<std::array<std::uint32_t, 2>>> sides(vertices);
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -44,57 +53,88 @@ class VertexNormals {
         sides[a].push_back({b, c});
       }
     }
-    start_.reserve(vertices + 1);
-    start_.push_back(0);
+    std::vector<std::uint32_t> ring;
     for (std::size_t v = 0; v < vertices; ++v) {
-      const auto& open = sides[v];
-      const auto fan = [v] { fail_at(name, "triangles must close around it", "mesh vertex", v); };
-      if (open.size() < 3) fan();
-      std::uint32_t at = open[0][0];
-      for (std::size_t k = 0; k < open.size(); ++k) {
-        ring_.push_back(at);
-        std::size_t found = open.size();
-        for (std::size_t j = 0; j < open.size(); ++j) {
-          if (open[j][0] != at) continue;
-          if (found != open.size()) fan();
-          found = j;
-        }
-        if (found == open.size()) fan();
-        at = open[found][1];
-        if (at == open[0][0] && k + 1 < open.size()) fan();
+      ring_of(sides[v], v, ring);
+      if (!std::binary_search(starts.begin(), starts.end(), v) && goes_on(ring)) {
+        ++runs_.back().count;
+      } else {
+        runs_.push_back({static_cast<std::uint32_t>(v), 1, static_cast<std::uint32_t>(rings_.size()),
+                         static_cast<std::uint32_t>(ring.size())});
+        rings_.insert(rings_.end(), ring.begin(), ring.end());
       }
-      if (at != open[0][0]) fan();
-      if (open.size() % 2 != 0) ring_.push_back(ring_.back());
-      start_.push_back(static_cast<std::uint32_t>(ring_.size()));
     }
   }
 
-  /// Neighbours of a vertex.
-  [[nodiscard]] std::span<const std::uint32_t> ring(std::size_t vertex) const noexcept {
-    return {ring_.data() + start_[vertex], ring_.data() + start_[vertex + 1]};
+  /// All runs, in the vertices' order.
+  [[nodiscard]] std::span<const Run> runs() const noexcept { return runs_; }
+  /// Neighbours of a run's first vertex; those of the next one are one further each.
+  [[nodiscard]] std::span<const std::uint32_t> ring(const Run& run) const noexcept {
+    return {rings_.data() + run.ring, run.size};
   }
 
-  /// Twice the area vector of the vertex's ring; its direction is the normal.
-  [[nodiscard]] Vec3<S> area(std::size_t vertex, const CyclicPoint<S>* position) const noexcept {
-    using Four = Eigen::Map<const Eigen::Array<S, 4, 1>>;
-    const std::uint32_t* r = ring_.data() + start_[vertex];
-    const std::size_t m = start_[vertex + 1] - start_[vertex];
-    const S* const o = position[r[m - 1]].data();
-    Eigen::Array<S, 4, 1> sum = Eigen::Array<S, 4, 1>::Zero();  // z, x, y of the cross products
-    for (std::size_t j = 0; j + 2 < m; j += 2) {
-      const S* const p = position[r[j]].data();
-      const S* const q = position[r[j + 1]].data();
-      const S* const s = position[r[j + 2]].data();
-      sum += (Four(q) - Four(o)) * (Four(s + 1) - Four(p + 1)) -
-             (Four(q + 1) - Four(o + 1)) * (Four(s) - Four(p));
+  /// Twice the area vectors of the rings of `lanes` vertices from number `offset` of the run on; their directions are the
+  /// normals. Past the run's end they mean nothing. `x`, `y`, `z`: the vertices' coordinates.
+  void area(const Run& run, std::size_t offset, const S* x, const S* y, const S* z, S* out_x, S* out_y,
+            S* out_z) const noexcept {
+    using detail::load_lanes;
+    using Lanes = detail::Lanes<S>;
+    const std::uint32_t* const r = rings_.data() + run.ring;
+    x += offset, y += offset, z += offset;
+    const std::uint32_t last = r[run.size - 1];
+    const Lanes ox = load_lanes(x + last), oy = load_lanes(y + last), oz = load_lanes(z + last);
+    Lanes sx = Lanes::Zero(), sy = Lanes::Zero(), sz = Lanes::Zero();
+    for (std::size_t j = 0; j + 2 < run.size; j += 2) {
+      const std::uint32_t p = r[j], q = r[j + 1], s = r[j + 2];
+      const Lanes ax = load_lanes(x + q) - ox, ay = load_lanes(y + q) - oy, az = load_lanes(z + q) - oz,
+                  bx = load_lanes(x + s) - load_lanes(x + p), by = load_lanes(y + s) - load_lanes(y + p),
+                  bz = load_lanes(z + s) - load_lanes(z + p);
+      sx += ay * bz - az * by;
+      sy += az * bx - ax * bz;
+      sz += ax * by - ay * bx;
     }
-    return Vec3<S>(sum[1], sum[2], sum[0]);
+    detail::store_lanes(out_x, sx);
+    detail::store_lanes(out_y, sy);
+    detail::store_lanes(out_z, sz);
   }
 
  private:
   static constexpr const char* name = "VertexNormals";
 
-  std::vector<std::uint32_t> ring_, start_;
+  // The neighbours of vertex v in order, lowest first, so that shifted rings begin alike; an even number of them.
+  static void ring_of(std::span<const std::array<std::uint32_t, 2>> open, std::size_t v,
+                      std::vector<std::uint32_t>& ring) {
+    const auto fan = [v] { fail_at(name, "triangles must close around it", "mesh vertex", v); };
+    ring.clear();
+    if (open.size() < 3) fan();
+    std::uint32_t at = open[0][0];
+    for (std::size_t k = 0; k < open.size(); ++k) {
+      ring.push_back(at);
+      std::size_t found = open.size();
+      for (std::size_t j = 0; j < open.size(); ++j) {
+        if (open[j][0] != at) continue;
+        if (found != open.size()) fan();
+        found = j;
+      }
+      if (found == open.size()) fan();
+      at = open[found][1];
+      if (at == open[0][0] && k + 1 < open.size()) fan();
+    }
+    if (at != open[0][0]) fan();
+    std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end()), ring.end());
+    if (ring.size() % 2 != 0) ring.push_back(ring.back());
+  }
+
+  [[nodiscard]] bool goes_on(std::span<const std::uint32_t> next) const noexcept {
+    if (runs_.empty() || runs_.back().count == lanes || next.size() != runs_.back().size) return false;
+    for (std::size_t k = 0; k < next.size(); ++k) {
+      if (next[k] != rings_[runs_.back().ring + k] + runs_.back().count) return false;
+    }
+    return true;
+  }
+
+  std::vector<Run> runs_;
+  std::vector<std::uint32_t> rings_;
 };
 
 }  // namespace palpate

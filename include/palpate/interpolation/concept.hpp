@@ -97,24 +97,43 @@ concept Interpolation = Real<typename I::Scalar> && HasLoad<I> && HasPartition<I
 
 namespace detail {
 
-/// out += sum over rows r of row_r value[r]. A face has at least three corners; a split triangle has four rows.
-template <Real S>
-inline void add_rows(const WeightBlock<S>& w, const S* value, S* PALPATE_RESTRICT out) noexcept {
+/// Do two active loads that hold weights `at`, a value per corner and the contact's give the same on the face, bit for bit?
+template <Real S, class Load>
+[[nodiscard]] inline bool same_values(const FacePartition<S>& partition, const Load& a, const Load& b,
+                                      std::size_t face) noexcept {
+  const Face<S>& f = partition.faces()[face];
+  for (std::size_t k = 0; k < f.corners; ++k) {
+    if (a.corner[f.corner[k]] != b.corner[f.corner[k]]) return false;
+  }
+  const bool split = partition.share(a.at, face) > S(0) || partition.share(b.at, face) > S(0);
+  return !split || (a.contact == b.contact && a.at.weight == b.at.weight);
+}
+
+/// Three weighted sums over the rows of a block, x = sum_r row_r value_r[0], y and z with value_r[1] and [2]; added to
+/// x, y, z if `Onto`. A face has at least three corners, and one row more where the contact splits it.
+template <bool Onto, Real S>
+inline void sum_rows(const WeightBlock<S>& w, const std::array<const S*, max_face_corners + 1>& value,
+                     S* PALPATE_RESTRICT x, S* PALPATE_RESTRICT y, S* PALPATE_RESTRICT z) noexcept {
   const S* PALPATE_RESTRICT const a = w.row[0];
   const S* PALPATE_RESTRICT const b = w.row[1];
   const S* PALPATE_RESTRICT const c = w.row[2];
-  const S va = value[0], vb = value[1], vc = value[2];
-  if (w.rows == 3) {
-    for (std::size_t i = 0; i < block_size; ++i) out[i] += a[i] * va + b[i] * vb + c[i] * vc;
-    return;
+  const S ax = value[0][0], ay = value[0][1], az = value[0][2], bx = value[1][0], by = value[1][1],
+          bz = value[1][2], cx = value[2][0], cy = value[2][1], cz = value[2][2];
+  for (std::size_t i = 0; i < block_size; ++i) {
+    const S sx = a[i] * ax + b[i] * bx + c[i] * cx, sy = a[i] * ay + b[i] * by + c[i] * cy,
+            sz = a[i] * az + b[i] * bz + c[i] * cz;
+    x[i] = Onto ? x[i] + sx : sx;
+    y[i] = Onto ? y[i] + sy : sy;
+    z[i] = Onto ? z[i] + sz : sz;
   }
-  const S* PALPATE_RESTRICT const d = w.row[3];
-  const S vd = value[3];
-  for (std::size_t i = 0; i < block_size; ++i) out[i] += (a[i] * va + b[i] * vb) + (c[i] * vc + d[i] * vd);
-  for (std::size_t r = 4; r < w.rows; ++r) {
+  for (std::size_t r = 3; r < w.rows; ++r) {
     const S* PALPATE_RESTRICT const row = w.row[r];
-    const S v = value[r];
-    for (std::size_t i = 0; i < block_size; ++i) out[i] += row[i] * v;
+    const S rx = value[r][0], ry = value[r][1], rz = value[r][2];
+    for (std::size_t i = 0; i < block_size; ++i) {
+      x[i] += row[i] * rx;
+      y[i] += row[i] * ry;
+      z[i] += row[i] * rz;
+    }
   }
 }
 

@@ -61,12 +61,7 @@ class LinearInterpolation {
 
   [[nodiscard]] bool same(const Load& a, const Load& b, std::size_t face) const noexcept {
     if (!a.active || !b.active) return !moves(a, face) && !moves(b, face);
-    const Face<S>& f = partition_.faces()[face];
-    for (std::size_t k = 0; k < f.corners; ++k) {
-      if (a.corner[f.corner[k]] != b.corner[f.corner[k]]) return false;
-    }
-    const bool split = partition_.share(a.at, face) > S(0) || partition_.share(b.at, face) > S(0);
-    return !split || (a.contact == b.contact && a.at.weight == b.at.weight);
+    return detail::same_values(partition_, a, b, face);
   }
 
   void add(const Load& load, std::size_t face, std::size_t first, const S* scale, S* x, S* y,
@@ -79,13 +74,10 @@ class LinearInterpolation {
       S* PALPATE_RESTRICT const mu = w.storage[f.corners].value;
       for (std::size_t i = 0; i < block_size; ++i) mu[i] *= scale[i];
     }
-    S* const out[3] = {x, y, z};
-    for (int axis = 0; axis < 3; ++axis) {
-      std::array<S, max_face_corners + 1> value;
-      for (std::size_t k = 0; k < f.corners; ++k) value[k] = load.corner[f.corner[k]][axis];
-      value[f.corners] = load.contact[axis];
-      detail::add_rows(w, value.data(), out[axis]);
-    }
+    std::array<const S*, max_face_corners + 1> value;
+    for (std::size_t k = 0; k < f.corners; ++k) value[k] = load.corner[f.corner[k]].data();
+    value[f.corners] = load.contact.data();
+    detail::sum_rows<true>(w, value, x, y, z);
   }
 
  private:

@@ -5,6 +5,7 @@
 
 #include <palpate/core/error.hpp>
 #include <palpate/core/vector.hpp>
+#include <palpate/interpolation/block.hpp>
 #include <palpate/interpolation/hull.hpp>
 #include <palpate/surface/extremal_points.hpp>
 
@@ -22,8 +23,6 @@ namespace palpate {
 
 /// Most corners of one face; larger flat facets are cut into triangles.
 inline constexpr std::size_t max_face_corners = 8;
-/// Vertices are worked on in blocks of at most this many, whose intermediate results stay in the first-level cache.
-inline constexpr std::size_t block_size = 64;
 
 /// A face: a polygon of extremal points, and the run of sorted vertices ("slots") over it.
 template <Real S>
@@ -43,15 +42,6 @@ struct PointWeights {
   bool valid = false;  ///< false for a point that is not finite or is the centre
   std::uint32_t face = 0;
   std::array<S, max_extremal_points> weight{};
-};
-
-/// One number per vertex of a block. Loops run over all `block_size` entries, so that they vectorise without a
-/// remainder; past the block's last vertex they hold whatever follows in memory, which is never used.
-template <Real S>
-struct alignas(64) Block {
-  S value[block_size];
-  [[nodiscard]] S& operator[](std::size_t i) noexcept { return value[i]; }
-  [[nodiscard]] const S& operator[](std::size_t i) const noexcept { return value[i]; }
 };
 
 /// Weights of a block, row by row: the corners of its face, then the contact point's.
@@ -167,37 +157,34 @@ class FacePartition {
   }
 
  private:
-  void split(const PointWeights<S>& at, const Face<S>& f, S share_here, WeightBlock<S>& out) const noexcept {
-    S* PALPATE_RESTRICT const mu = out.storage[f.corners].value;
-    Block<S> sum;
-    for (std::size_t i = 0; i < block_size; ++i) mu[i] = share_here;
+  PALPATE_FLATTEN void split(const PointWeights<S>& at, const Face<S>& f, S share_here,
+                             WeightBlock<S>& out) const noexcept {
+    using Lanes = detail::Lanes<S>;
+    std::array<S, max_face_corners> P, per_P, lift;
     for (std::size_t k = 0; k < f.corners; ++k) {
-      const S* PALPATE_RESTRICT const weight = out.row[k];
-      const S P = at.weight[f.corner[k]], scale = S(1) / (std::max)(P, p_.fade),
-              lift = (std::max)(p_.fade - P, S(0));
-      for (std::size_t i = 0; i < block_size; ++i) {
-        const S most = (weight[i] + lift) * scale;
-        mu[i] = most < mu[i] ? most : mu[i];
+      P[k] = at.weight[f.corner[k]];
+      per_P[k] = S(1) / (std::max)(P[k], p_.fade);
+      lift[k] = (std::max)(p_.fade - P[k], S(0));
+    }
+    S* const mu = out.storage[f.corners].value;
+    for (std::size_t i = 0; i < block_size; i += detail::lanes<S>) {
+      Lanes most = Lanes::Constant(share_here);
+      for (std::size_t k = 0; k < f.corners; ++k)
+        most = most.min((detail::load_lanes(out.row[k] + i) + lift[k]) * per_P[k]);
+      Lanes sum = Lanes::Constant((std::numeric_limits<S>::min)());  // never divides by zero
+      for (std::size_t k = 0; k < f.corners; ++k) {
+        const Lanes left = (detail::load_lanes(out.row[k] + i) - most * P[k]).max(S(0));
+        detail::store_lanes(out.storage[k].value + i, left);
+        sum += left;
       }
-    }
-    for (std::size_t i = 0; i < block_size; ++i)
-      sum[i] = (std::numeric_limits<S>::min)();  // never divides by zero
-    for (std::size_t k = 0; k < f.corners; ++k) {
-      const S* PALPATE_RESTRICT const weight = out.row[k];
-      S* PALPATE_RESTRICT const left = out.storage[k].value;
-      const S P = at.weight[f.corner[k]];
-      for (std::size_t i = 0; i < block_size; ++i) {
-        const S rest = weight[i] - mu[i] * P;
-        left[i] = rest > S(0) ? rest : S(0);
-        sum[i] += left[i];
+      const Lanes scale = (S(1) - most) / sum;
+      for (std::size_t k = 0; k < f.corners; ++k) {
+        S* const left = out.storage[k].value + i;
+        detail::store_lanes<S>(left, detail::load_lanes(left) * scale);
       }
-      out.row[k] = left;
+      detail::store_lanes(mu + i, most);
     }
-    for (std::size_t i = 0; i < block_size; ++i) sum[i] = (S(1) - mu[i]) / sum[i];
-    for (std::size_t k = 0; k < f.corners; ++k) {
-      S* PALPATE_RESTRICT const left = out.storage[k].value;
-      for (std::size_t i = 0; i < block_size; ++i) left[i] *= sum[i];
-    }
+    for (std::size_t k = 0; k < f.corners; ++k) out.row[k] = out.storage[k].value;
     out.row[f.corners] = mu;
     out.rows = f.corners + 1;
   }
@@ -377,8 +364,8 @@ template <Real S>
   return sorted;
 }
 
-/// Partition of an exact surface's display mesh over its own extremal points.
-template <ParametricSurface B>
+/// Partition of a surface's display mesh over its own extremal points.
+template <HasClosest B>
 requires HasExtremalPoints<B>
 [[nodiscard]] FacePartition<typename B::Scalar> make_partition(
     const B& body, const MeshData<typename B::Scalar>& mesh,

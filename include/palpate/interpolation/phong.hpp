@@ -13,25 +13,23 @@ namespace palpate {
 
 namespace detail {
 
-/// Taylor's series of cos y and (sin y)/y for |y| <= pi/2 to 2 ulp of 1, square = y^2; without a branch, so that
-/// loops vectorise.
-template <Real S, int K = 1>
-[[nodiscard]] inline S cosine_series(S square) noexcept {
-  constexpr int last = sizeof(S) == 4 ? 6 : 10;
-  constexpr S factor = S(1) / static_cast<S>((2 * K - 1) * (2 * K));
-  if constexpr (K == last)
-    return S(1) - square * factor;
-  else
-    return S(1) - square * factor * cosine_series<S, K + 1>(square);
+/// (-1)^k / (K (K+1) ... (K+2k-1)).
+template <int K>
+[[nodiscard]] constexpr double series_factor(int k) noexcept {
+  double factor = 1;
+  for (int j = 1; j <= k; ++j) factor /= -(K + 2 * j - 2) * (K + 2 * j - 1);
+  return factor;
 }
-template <Real S, int K = 1>
-[[nodiscard]] inline S sine_series(S square) noexcept {
+/// sum_k series_factor<K>(k) x^k: Taylor's series of cos y (K = 1) and (sin y)/y (K = 2) in x = y^2, for |y| <= pi/2 to
+/// 2 ulp of 1. Without a branch, so that loops vectorise.
+template <Real S, int K, int First = 0>
+[[nodiscard]] inline S alternating_series(S x) noexcept {
   constexpr int last = sizeof(S) == 4 ? 6 : 10;
-  constexpr S factor = S(1) / static_cast<S>((2 * K) * (2 * K + 1));
-  if constexpr (K == last)
-    return S(1) - square * factor;
+  constexpr S factor = static_cast<S>(series_factor<K>(First));
+  if constexpr (First == last)
+    return factor;
   else
-    return S(1) - square * factor * sine_series<S, K + 1>(square);
+    return factor + x * alternating_series<S, K, First + 1>(x);
 }
 
 }  // namespace detail
@@ -107,12 +105,7 @@ class PhongInterpolation {
 
   [[nodiscard]] bool same(const Load& a, const Load& b, std::size_t face) const noexcept {
     if (!a.active || !b.active) return !moves(a, face) && !moves(b, face);
-    const Face<S>& f = partition_.faces()[face];
-    for (std::size_t k = 0; k < f.corners; ++k) {
-      if (a.corner[f.corner[k]] != b.corner[f.corner[k]]) return false;
-    }
-    const bool split = partition_.share(a.at, face) > S(0) || partition_.share(b.at, face) > S(0);
-    return !split || (a.contact == b.contact && a.at.weight == b.at.weight);
+    return detail::same_values(partition_, a, b, face);
   }
 
   void add(const Load& load, std::size_t face, std::size_t first, const S* scale, S* x, S* y,
@@ -122,72 +115,98 @@ class PhongInterpolation {
     WeightBlock<S> w;
     partition_.weights(load.at, face, first, w);
 
-    Block<S> sum[terms];  // over the corners, of weight times term
-    for (std::size_t term = 0; term < terms; ++term) {
-      std::array<S, max_face_corners + 1> value;
-      for (std::size_t k = 0; k < f.corners; ++k) value[k] = load.corner[f.corner[k]][term];
-      value[f.corners] = load.contact[term];
-      for (std::size_t i = 0; i < block_size; ++i) sum[term][i] = S(0);
-      detail::add_rows(w, value.data(), sum[term].value);
+    Block<S> m, g, theta, tx, ty, tz, stretch, missing;
+    sum(load, f, w, magnitude, m, g, theta);
+    sum(load, f, w, tangent, tx, ty, tz);
+    Block<S> less;  // by how much the contact's weight is reduced
+    const bool reduced = scale != nullptr && w.rows > f.corners;
+    if (reduced) {
+      const S* PALPATE_RESTRICT const mu = w.row[f.corners];
+      for (std::size_t i = 0; i < block_size; ++i) less[i] = mu[i] * (scale[i] - S(1));
+      const S D = load.contact[magnitude];
+      for (std::size_t i = 0; i < block_size; ++i) m[i] += less[i] * D;
     }
-    if (scale != nullptr && w.rows > f.corners) {
-      for (const std::size_t term : {magnitude, linear, linear + 1, linear + 2}) {
-        for (std::size_t i = 0; i < block_size; ++i)
-          sum[term][i] += w.row[f.corners][i] * (scale[i] - S(1)) * load.contact[term];
+    const S* PALPATE_RESTRICT const nx = partition_.normal(0) + first;
+    const S* PALPATE_RESTRICT const ny = partition_.normal(1) + first;
+    const S* PALPATE_RESTRICT const nz = partition_.normal(2) + first;
+    direction(nx, ny, nz, g, theta, tx, ty, tz, stretch, missing);
+    if (detail::largest(missing) > S(0)) {
+      Block<S> u[3];
+      sum(load, f, w, linear, u[0], u[1], u[2]);
+      S* const out[3] = {x, y, z};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const S D = load.contact[linear + axis];
+        if (reduced) {
+          for (std::size_t i = 0; i < block_size; ++i) u[axis][i] += less[i] * D;
+        }
+        S* PALPATE_RESTRICT const o = out[axis];
+        for (std::size_t i = 0; i < block_size; ++i) o[i] += missing[i] * u[axis][i];
       }
+      for (std::size_t i = 0; i < block_size; ++i) m[i] *= S(1) - missing[i];
     }
-    direct(sum, partition_.normal(0) + first, partition_.normal(1) + first, partition_.normal(2) + first, x,
-           y, z);
+    add_displacements(nx, ny, nz, m, theta, stretch, tx, ty, tz, x, y, z);
   }
 
  private:
   static constexpr std::size_t magnitude = 0, lent = 1, angle = 2, tangent = 3,
                                linear = 6;  // places in Corner
-  static constexpr S most_stretch = S(4);
 
-  // Turns the sums into displacements. Short loops: one would not vectorise for the limits in its middle.
-  static void direct(Block<S>* sum, const S* PALPATE_RESTRICT nx, const S* PALPATE_RESTRICT ny,
-                     const S* PALPATE_RESTRICT nz, S* PALPATE_RESTRICT x, S* PALPATE_RESTRICT y,
-                     S* PALPATE_RESTRICT z) noexcept {
-    constexpr S tiny = (std::numeric_limits<S>::min)();
-    S* PALPATE_RESTRICT const g = sum[lent].value;
-    S* PALPATE_RESTRICT const m = sum[magnitude].value;
-    S* PALPATE_RESTRICT const theta = sum[angle].value;
-    S* PALPATE_RESTRICT const tx = sum[tangent].value;
-    S* PALPATE_RESTRICT const ty = sum[tangent + 1].value;
-    S* PALPATE_RESTRICT const tz = sum[tangent + 2].value;
-    const S* PALPATE_RESTRICT const lx = sum[linear].value;
-    const S* PALPATE_RESTRICT const ly = sum[linear + 1].value;
-    const S* PALPATE_RESTRICT const lz = sum[linear + 2].value;
-    Block<S> length, stretch, missing, sine;
+  // Sums of three neighbouring terms.
+  static void sum(const Load& load, const Face<S>& f, const WeightBlock<S>& w, std::size_t term, Block<S>& x,
+                  Block<S>& y, Block<S>& z) noexcept {
+    std::array<const S*, max_face_corners + 1> value;
+    for (std::size_t k = 0; k < f.corners; ++k) value[k] = load.corner[f.corner[k]].data() + term;
+    value[f.corners] = load.contact.data() + term;
+    detail::sum_rows<false>(w, value, x.value, y.value, z.value);
+  }
+
+  // Sums of terms to cosine (in theta), tangential vectors and their stretch, and what is missing of the sine. One
+  // short loop after the other: their results are far apart, and a long loop would wait for them.
+  static void direction(const S* PALPATE_RESTRICT nx, const S* PALPATE_RESTRICT ny,
+                        const S* PALPATE_RESTRICT nz, Block<S>& PALPATE_RESTRICT g,
+                        Block<S>& PALPATE_RESTRICT theta, Block<S>& PALPATE_RESTRICT tx,
+                        Block<S>& PALPATE_RESTRICT ty, Block<S>& PALPATE_RESTRICT tz,
+                        Block<S>& PALPATE_RESTRICT stretch, Block<S>& PALPATE_RESTRICT missing) noexcept {
+    constexpr S tiny = (std::numeric_limits<S>::min)(), most_stretch = S(4);
+    Block<S> length2, length, sine;
     for (std::size_t i = 0; i < block_size; ++i)
       g[i] = g[i] > tiny ? g[i] : tiny;  // nothing lent: m is 0 as well
+    for (std::size_t i = 0; i < block_size; ++i) g[i] = S(1) / g[i];
     for (std::size_t i = 0; i < block_size; ++i) {
-      const S per_lent = S(1) / g[i];
-      const S turned = theta[i] * per_lent - S(1.57079632679489661923132169163975144L),
-              square = turned * turned;
-      sine[i] = detail::cosine_series(square);
-      theta[i] = -turned * detail::sine_series(square);  // from here on: cosine
-      const S across = tx[i] * nx[i] + ty[i] * ny[i] + tz[i] * nz[i];
-      tx[i] = (tx[i] - nx[i] * across) * per_lent;
-      ty[i] = (ty[i] - ny[i] * across) * per_lent;
-      tz[i] = (tz[i] - nz[i] * across) * per_lent;
-      const S length2 = tx[i] * tx[i] + ty[i] * ty[i] + tz[i] * tz[i],
-              per_length = detail::inverse_root(length2);
-      length[i] = length2 * per_length;
-      stretch[i] = sine[i] * per_length;
+      const S turned = theta[i] * g[i] - S(1.57079632679489661923132169163975144L), square = turned * turned;
+      sine[i] = detail::alternating_series<S, 1>(square);
+      theta[i] = -turned * detail::alternating_series<S, 2>(square);  // from here on: cosine
     }
-    for (std::size_t i = 0; i < block_size; ++i)
-      stretch[i] = stretch[i] < most_stretch ? stretch[i] : most_stretch;
+    for (std::size_t i = 0; i < block_size; ++i) {
+      const S across = tx[i] * nx[i] + ty[i] * ny[i] + tz[i] * nz[i];
+      tx[i] = (tx[i] - nx[i] * across) * g[i];
+      ty[i] = (ty[i] - ny[i] * across) * g[i];
+      tz[i] = (tz[i] - nz[i] * across) * g[i];
+      length2[i] = tx[i] * tx[i] + ty[i] * ty[i] + tz[i] * tz[i];
+    }
+    for (std::size_t i = 0; i < block_size; ++i) {
+      const S per_length = detail::inverse_root(length2[i]), wanted = sine[i] * per_length;
+      length[i] = length2[i] * per_length;
+      stretch[i] = wanted < most_stretch ? wanted : most_stretch;
+    }
     for (std::size_t i = 0; i < block_size; ++i) {
       const S lacking = sine[i] - length[i] * stretch[i];
       missing[i] = lacking > S(0) ? lacking : S(0);
     }
+  }
+
+  static void add_displacements(const S* PALPATE_RESTRICT nx, const S* PALPATE_RESTRICT ny,
+                                const S* PALPATE_RESTRICT nz, const Block<S>& PALPATE_RESTRICT m,
+                                const Block<S>& PALPATE_RESTRICT cosine,
+                                const Block<S>& PALPATE_RESTRICT stretch, const Block<S>& PALPATE_RESTRICT tx,
+                                const Block<S>& PALPATE_RESTRICT ty, const Block<S>& PALPATE_RESTRICT tz,
+                                S* PALPATE_RESTRICT x, S* PALPATE_RESTRICT y,
+                                S* PALPATE_RESTRICT z) noexcept {
     for (std::size_t i = 0; i < block_size; ++i) {
-      const S size = m[i] * (S(1) - missing[i]), along = size * theta[i], aside = size * stretch[i];
-      x[i] += along * nx[i] + aside * tx[i] + missing[i] * lx[i];
-      y[i] += along * ny[i] + aside * ty[i] + missing[i] * ly[i];
-      z[i] += along * nz[i] + aside * tz[i] + missing[i] * lz[i];
+      const S along = m[i] * cosine[i], aside = m[i] * stretch[i];
+      x[i] += along * nx[i] + aside * tx[i];
+      y[i] += along * ny[i] + aside * ty[i];
+      z[i] += along * nz[i] + aside * tz[i];
     }
   }
 

@@ -119,26 +119,28 @@ class SmoothInterpolation {
       moving[i] = square * square * detail::inverse_root(square);
     }
     S* const out[3] = {x, y, z};
+    Block<S> u;
     std::array<S, max_extremal_points> factor;
     for (int axis = 0; axis < 3; ++axis) {
       for (std::size_t j = 0; j < spline_.size(); ++j) factor[j] = load.kernel[j][axis];
       evaluate(first,
                {load.affine[0][axis], load.affine[1][axis], load.affine[2][axis], load.affine[3][axis]},
-               factor.data(), load.moving[axis], moving.value, out[axis]);
+               factor.data(), load.moving[axis], moving.value, u.value);
+      S* PALPATE_RESTRICT const o = out[axis];
+      for (std::size_t i = 0; i < block_size; ++i) o[i] += u[i];
     }
     if (scale == nullptr) return;
     Block<S> own;
-    for (std::size_t i = 0; i < block_size; ++i) own[i] = S(0);
     evaluate(first, load.own_affine, load.own.data(), load.own_moving, moving.value, own.value);
     for (int axis = 0; axis < 3; ++axis) {
-      S* PALPATE_RESTRICT const u = out[axis];
+      S* PALPATE_RESTRICT const o = out[axis];
       const S D = load.contact[axis];
-      for (std::size_t i = 0; i < block_size; ++i) u[i] += own[i] * (scale[i] - S(1)) * D;
+      for (std::size_t i = 0; i < block_size; ++i) o[i] += own[i] * (scale[i] - S(1)) * D;
     }
   }
 
  private:
-  // out += the function with these coefficients.
+  // out = the function with these coefficients.
   void evaluate(std::size_t first, const std::array<S, 4>& affine, const S* factor, S moving_factor,
                 const S* PALPATE_RESTRICT moving, S* PALPATE_RESTRICT out) const noexcept {
     const S* PALPATE_RESTRICT const vx = &reduced_[0][first];
@@ -146,7 +148,7 @@ class SmoothInterpolation {
     const S* PALPATE_RESTRICT const vz = &reduced_[2][first];
     const S b = affine[0], ax = affine[1], ay = affine[2], az = affine[3];
     for (std::size_t i = 0; i < block_size; ++i)
-      out[i] += b + vx[i] * ax + vy[i] * ay + vz[i] * az + moving[i] * moving_factor;
+      out[i] = b + vx[i] * ax + vy[i] * ay + vz[i] * az + moving[i] * moving_factor;
     const std::size_t stride = partition_.size();
     std::size_t j = 0;
     for (; j + 2 <= spline_.size(); j += 2) {  // two at a time: half the passes over `out`

@@ -9,31 +9,17 @@
 /// principal value is computed. Unknown: u at free vertices, t at fixed ones. Source: [brebbia1984].
 
 #include <palpate/response/kelvin.hpp>
+#include <palpate/response/parallel.hpp>
 #include <palpate/response/quadrature.hpp>
 #include <palpate/response/solve_mesh.hpp>
 
 #include <Eigen/LU>
-
-#include <thread>
 
 namespace palpate {
 
 namespace detail {
 
 using Matrix = Eigen::MatrixXd;
-
-/// body(i) for i in [0, count), in contiguous chunks; the result does not depend on the number of threads.
-template <class Body>
-void parallel_for(std::size_t count, unsigned threads, const Body& body) {
-  threads = (std::max)(1u, (std::min)(threads, static_cast<unsigned>((std::max)(count, std::size_t{1}))));
-  std::vector<std::thread> pool;
-  const auto run = [&](unsigned k) {
-    for (std::size_t i = count * k / threads; i < count * (k + 1) / threads; ++i) body(i);
-  };
-  for (unsigned k = 1; k < threads; ++k) pool.emplace_back(run, k);
-  run(0);
-  for (auto& t : pool) t.join();
-}
 
 /// Quadratic triangle of the solve mesh: three corners, three middles of edges.
 struct Element {
@@ -209,7 +195,7 @@ class BoundaryElements {
                const Add& add, std::vector<detail::ElementPoint>& scratch) const {
     const Vec3<double> p[3] = {e.at(part[0]), e.at(part[1]), e.at(part[2])};
     const double edge = std::sqrt((std::max)({(p[0] - p[1]).squaredNorm(), (p[1] - p[2]).squaredNorm(), (p[2] - p[0]).squaredNorm()}));
-    const Vec3<double> w = closest_weights(x, p[0], p[1], p[2]);
+    const Vec3<double> w = detail::closest_on_triangle<double>(x, p[0], p[1], p[2]);
     const double distance = (w[0] * p[0] + w[1] * p[1] + w[2] * p[2] - x).norm();
     if (distance > near * edge || level == 6) {
       for (const TrianglePoint& q : radon_rule()) {

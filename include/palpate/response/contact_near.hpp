@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  The near field of one solved contact, eight places at a time. Per tick.
+/// @file  The near field of one solved contact, four places at a time. Per tick.
 ///
 /// Places near the contact lie on a bent surface, the disc in a plane. The disc is taken at the depth z of its own edge
 /// below the tangent plane: for a quadric z (a/r)^2, so depth = z (1 - (a/r)^2), which vanishes at the edge.
 ///
 /// Second order in depth d_n, outside the patch only, s = r/a:
-///     q_r = k_r (d_n^2/a) asin(1/s) / (s sqrt(s^2 - 1 + e^2)),   q_n = k_n (d_n^2/a) s^-5 sqrt(1 - s^-2)
+///     q_r = k_r (d_n delta_n/a) asin(1/s) / (s sqrt(s^2 - 1 + e^2)),   q_n = k_n (d_n delta_n/a) s^-5 sqrt(1 - s^-2)
 /// e is such that the sum of all terms of second order vanishes at the patch's edge.
 
 #include <palpate/response/near_field.hpp>
@@ -20,46 +20,45 @@ struct Lane3 {
 };
 
 struct ContactNear {
-  Vec3<float> place, m;       ///< m: unit normal into the body
-  Vec3<float> along;          ///< tangential part of the force / (4 pi mu)
-  Vec3<float> tilt;           ///< moment of tilt / (4 pi mu)
-  Vec3<float> push;           ///< taken back outside the patch, times s^-8
-  float normal = 0;           ///< normal part of the force / (4 pi mu)
-  float dipole = 0;           ///< radial double force / (4 pi mu)
-  float radial = 0, sink = 0; ///< k_r d_n^2 / a, k_n d_n^2 / a
-  float rim2 = 1;             ///< e^2
+  Vec3<float> place, m;        ///< m: unit normal into the body
+  Vec3<float> along;           ///< tangential part of the force / (4 pi mu)
+  Vec3<float> tilt;            ///< moment of tilt / (4 pi mu)
+  Vec3<float> push;            ///< taken back outside the patch, times s^-8
+  float normal = 0;            ///< normal part of the force / (4 pi mu)
+  float dipole = 0;            ///< radial double force / (4 pi mu)
+  float radial = 0, sink = 0;  ///< k_r d_n^2 / a, k_n d_n^2 / a
+  float rim2 = 1;              ///< e^2
   float a = 1, nu = 0.5f;
-  bool second = false;        ///< any term of second order
-  bool tilted = false;        ///< tilt is not zero
-  bool ball = false;          ///< Hertz's weight
+  bool second = false;  ///< any term of second order
+  bool tilted = false;  ///< tilt is not zero
+  bool ball = false;    ///< Hertz's weight
 
-  [[nodiscard]] Lane3 operator()(const Lane3& at) const noexcept {
+  [[nodiscard]] PALPATE_INLINE Lane3 operator()(const Lane3& at) const noexcept {
     const Lane rx = at.x - place.x(), ry = at.y - place.y(), rz = at.z - place.z();
     const Lane z = rx * m.x() + ry * m.y() + rz * m.z();
     const Lane px = rx - z * m.x(), py = ry - z * m.y(), pz = rz - z * m.z();
-    const Lane p2 = px * px + py * py + pz * pz, r2 = p2 + z * z;
-    const Lane near2 = (a * a / r2.max(1e-30f)).min(1.f);
+    const Lane r2 = (rx * rx + ry * ry + rz * rz).max(1e-12f * a * a), p2 = px * px + py * py + pz * pz;
+    const Lane near2 = (a * a / r2).min(1.f);
     const Lane depth = (z * (1.f - near2)).max(0.f);
     const Disc<Lane, float> disc(p2, depth, a);
     if (ball) {
       const auto u = disc.hertz(normal, nu);
-      return {u.in_plane * px + u.normal * m.x(), u.in_plane * py + u.normal * m.y(), u.in_plane * pz + u.normal * m.z()};
+      return {u.in_plane * px + u.normal * m.x(), u.in_plane * py + u.normal * m.y(),
+              u.in_plane * pz + u.normal * m.z()};
     }
-    const Lane fp = px * along.x() + py * along.y() + pz * along.z();
-    const auto u = disc.flat(normal, fp, nu);
-    Lane in_plane = u.in_plane, down = u.normal;
+    const auto u = disc.flat(normal, Lane(px * along.x() + py * along.y() + pz * along.z()), nu);
+    Lane in_plane = u.in_plane, down = u.normal, back = Lane::Zero();
     Lane3 out{u.along * along.x(), u.along * along.y(), u.along * along.z()};
     if (second) {
       const auto d = disc.double_force(nu);
-      const Lane outside = ((1.f - near2) * 1e30f).min(1.f);
-      const Lane inverse = near2.sqrt();  // 1 / s, at most 1
-      // asin by the angle of its right triangle.
-      const Lane root = (1.f - near2).max(0.f).sqrt(), angle = first_quadrant_angle(inverse, root);
-      const Lane q_r = outside * radial * angle * inverse / (1.f / near2 - 1.f + rim2).max(1e-12f).sqrt();
-      const Lane q_n = outside * sink * near2 * near2 * inverse * root;
-      const Lane back = outside * near2 * near2 * near2 * near2;
-      in_plane += dipole * d.in_plane + q_r / p2.max(1e-30f).sqrt();
-      down += dipole * d.normal + q_n;
+      const Lane inverse = near2.sqrt(), beyond = (1.f - near2).max(0.f);  // 1 / s, at most 1; 1 - 1 / s^2
+      const Lane outside = (beyond * 1e30f).min(1.f), near4 = outside * near2 * near2;
+      // q_r / p: asin(1/s) / (s sqrt(s^2 - 1 + e^2)), with the roots of 1/s^2 instead.
+      const Lane q_r = outside * radial * arc_sine(inverse) * near2 /
+                       ((beyond + rim2 * near2) * p2).max(1e-12f * a * a).sqrt();
+      in_plane += dipole * d.in_plane + q_r;
+      down += dipole * d.normal + sink * near4 * inverse * beyond.sqrt();
+      back = near4 * near2 * near2;
       out.x -= back * push.x();
       out.y -= back * push.y();
       out.z -= back * push.z();
@@ -68,7 +67,9 @@ struct ContactNear {
       const Lane tp = px * tilt.x() + py * tilt.y() + pz * tilt.z();
       const auto t = disc.tilt(tp, nu);
       in_plane += t.in_plane;
-      down += t.normal;
+      // The patch itself does not turn: what the disc does at its edge is taken back, as the push is.
+      const float turned = 1.5f * std::numbers::pi_v<float> * (1.f - nu) / (a * a * a);
+      down += t.normal - back * turned * near2.sqrt() * tp;
       out.x += t.along * tilt.x();
       out.y += t.along * tilt.y();
       out.z += t.along * tilt.z();
@@ -82,7 +83,8 @@ struct ContactNear {
 
 /// Within a ball's contact the surface lies on the ball; beside it, not inside. r: place from the first touch; u: its
 /// displacement, changed along m.
-inline void rest_on_ball(const Vec3<double>& m, double depth, double ball, double a, const Vec3<double>& r, Vec3<double>& u) noexcept {
+inline void rest_on_ball(const Vec3<double>& m, double depth, double ball, double a, const Vec3<double>& r,
+                         Vec3<double>& u) noexcept {
   const Vec3<double> moved = r + u;
   const double rest = ball * ball - tangential(moved, m).squaredNorm();
   if (!(rest > 0) || r.dot(m) > ball) return;

@@ -22,9 +22,10 @@ struct ResponseContact {
 template <Real S>
 [[nodiscard]] inline bool is_usable(const ResponseContact<S>& c) noexcept {
   const S limit = S(1e6);
-  return is_finite(c.place) && is_finite(c.displacement) && is_finite(c.normal) && is_finite(c.radius) && c.radius > S(1e-9) &&
-         c.radius < limit && c.place.cwiseAbs().maxCoeff() < limit && c.displacement.cwiseAbs().maxCoeff() < limit &&
-         c.normal.cwiseAbs().maxCoeff() < S(2) && std::abs(c.normal.squaredNorm() - S(1)) < S(1e-3);
+  return is_finite(c.place) && is_finite(c.displacement) && is_finite(c.normal) && is_finite(c.radius) &&
+         c.radius > S(1e-9) && c.radius < limit && c.place.cwiseAbs().maxCoeff() < limit &&
+         c.displacement.cwiseAbs().maxCoeff() < limit && c.normal.cwiseAbs().maxCoeff() < S(2) &&
+         std::abs(c.normal.squaredNorm() - S(1)) < S(1e-3);
 }
 
 /// A rigid frictionless sphere, pressed along the normal.
@@ -39,13 +40,13 @@ struct SphereContact {
 
 /// Constants of second order in depth, for a stuck patch on nearly incompressible rubber (neo-Hookean, nu = 0.49).
 /// Fitted on one normal push on a cube and one skew push on an ellipsoid, rounded, used for every body; depth <= 2 a.
+/// delta_n: local indentation, the normal displacement of a half-space by the same force. Without constants: the radial
+/// double force -F_n d_n and the moment of tilt F_n d_t - F_t d_n, by which the load has moved.
 struct SecondOrder {
-  double dipole = 8;          ///< radial double force at the patch: -dipole mu a d_n^2
-  double radial = 0.18;       ///< near term along the surface
-  double sink = 0.36;         ///< near term along the normal
-  double tilt = 8.0 / 3;      ///< moment tilt mu a d_n d_t, which is F_n d_t - F_t d_n
-  double drag = 0.3;          ///< tangential force drag mu d_n d_t
-  double softening = 0.3;     ///< normal force -softening mu d_n^2
+  double radial = 0.18;    ///< near term along the surface, times delta_n d_n / a
+  double sink = 0.36;      ///< near term along the normal, likewise
+  double drag = 0.3;       ///< tangential force drag mu delta_n d_t
+  double softening = 0.3;  ///< normal force -softening mu delta_n d_n
 };
 
 }  // namespace palpate

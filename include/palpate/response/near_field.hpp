@@ -16,9 +16,11 @@
 ///     normal:      u = f_n [ -z grad phi + (1 + (1-2 nu)) phi m - (1-2 nu) grad_p L ]
 ///     tangential:  u = 2 f phi - z grad_p d_f L + 2 nu grad_p d_f X + m [ -z d_f phi + (1-2 nu) d_f L ]
 
+#include <palpate/config.hpp>
 #include <palpate/core/vector.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <numbers>
@@ -28,7 +30,8 @@ namespace palpate {
 /// Displacement times 4 pi mu at r of the point force f on the half-space's surface. r != 0. `regular` >= 0 [m^2] is
 /// added to R^2 (0: exact).
 template <class T>
-[[nodiscard]] inline Vec3<T> point_load(const Vec3<T>& r, const Vec3<T>& m, const Vec3<T>& f, T nu, T regular = T(0)) noexcept {
+[[nodiscard]] inline Vec3<T> point_load(const Vec3<T>& r, const Vec3<T>& m, const Vec3<T>& f, T nu,
+                                        T regular = T(0)) noexcept {
   const T R2 = r.squaredNorm() + regular, R = std::sqrt(R2), inverse = T(1) / R;
   Vec3<T> u = inverse * f + (f.dot(r) * inverse / R2) * r;
   const T b = T(1) - T(2) * nu;
@@ -37,14 +40,15 @@ template <class T>
     const Vec3<T> p = r - z * m, ft = f - fn * m;
     // Over a hollow of the body R + z may vanish; there the closed form is bounded instead of exact.
     const T sum = (std::max)(R + z, T(0.1) * R), s1 = T(1) / sum, fp = ft.dot(p);
-    u += b * (fn * (inverse * m - (inverse * s1) * p) + s1 * ft - (fp * inverse * s1 * s1) * p + (fp * inverse * s1) * m);
+    u += b * (fn * (inverse * m - (inverse * s1) * p) + s1 * ft - (fp * inverse * s1 * s1) * p +
+              (fp * inverse * s1) * m);
   }
   return u;
 }
 
 /// Traction on a plane with outward normal n at r, of the displacement above / (4 pi mu), with mu = 1.
-[[nodiscard]] inline Mat3<double> point_load_traction(const Vec3<double>& r, const Vec3<double>& m, const Vec3<double>& n,
-                                                      double nu) noexcept {
+[[nodiscard]] inline Mat3<double> point_load_traction(const Vec3<double>& r, const Vec3<double>& m,
+                                                      const Vec3<double>& n, double nu) noexcept {
   using V = Vec3<double>;
   constexpr double pi = std::numbers::pi;
   const double R2 = r.squaredNorm(), R = std::sqrt(R2), R3 = R2 * R;
@@ -74,17 +78,20 @@ template <class T>
 }
 
 namespace detail {
-/// Eight places at a time, for the tick's long loops; Eigen maps it to the machine's registers.
-using Lane = Eigen::Array<float, 8, 1>;
+/// Four places at a time, for the tick's long loops; Eigen maps it to the machine's registers.
+using Lane = Eigen::Array4f;
 
 template <class S>
-[[nodiscard]] inline S larger(const S& a, const S& b) noexcept {
-  if constexpr (std::floating_point<S>) return a > b ? a : b;
-  else return a.max(b);
+[[nodiscard]] PALPATE_INLINE S larger(const S& a, const S& b) noexcept {
+  if constexpr (std::floating_point<S>)
+    return a > b ? a : b;
+  else
+    return a.max(b);
 }
 template <class S>
-[[nodiscard]] inline S where_positive(const S& x, const S& yes, const S& no) noexcept {
-  if constexpr (std::floating_point<S>) return x >= S(0) ? yes : no;
+[[nodiscard]] PALPATE_INLINE S where_positive(const S& x, const S& yes, const S& no) noexcept {
+  if constexpr (std::floating_point<S>)
+    return x >= S(0) ? yes : no;
   else {
     const S step = (x * 1e30f).max(0.f).min(1.f);  // arithmetic: a select would leave the registers
     return no + step * (yes - no);
@@ -92,15 +99,22 @@ template <class S>
 }
 /// atan2(y, x) for x >= 0, y >= 0, not both 0; in lanes to 2e-6 by a polynomial.
 template <class S>
-[[nodiscard]] inline S first_quadrant_angle(const S& y, const S& x) noexcept {
+[[nodiscard]] PALPATE_INLINE S first_quadrant_angle(const S& y, const S& x) noexcept {
   if constexpr (std::floating_point<S>) {
     return std::atan2(y, x);
   } else {
     const S t = x.min(y) / x.max(y), t2 = t * t;
-    const S p = t * (0.99997726f + t2 * (-0.33262347f + t2 * (0.19354346f + t2 * (-0.11643287f + t2 * (0.05265332f - t2 * 0.01172120f)))));
+    const S p = t * (0.99997726f +
+                     t2 * (-0.33262347f +
+                           t2 * (0.19354346f + t2 * (-0.11643287f + t2 * (0.05265332f - t2 * 0.01172120f)))));
     const S step = ((y - x) * 1e30f).max(0.f).min(1.f);
     return p + step * (1.57079633f - 2.f * p);
   }
+}
+/// asin(x) for 0 <= x <= 1, to 7e-5. Source: [abramowitz1964], 4.4.45.
+[[nodiscard]] PALPATE_INLINE Lane arc_sine(const Lane& x) noexcept {
+  return 1.57079633f -
+         (1.f - x).max(0.f).sqrt() * (1.5707288f + x * (-0.2121144f + x * (0.0742610f - 0.0187293f * x)));
 }
 }  // namespace detail
 
@@ -114,26 +128,28 @@ class Disc {
     S in_plane, normal, along;
   };
 
-  Disc(const S& p2, const S& depth, F radius) noexcept : z_(depth), p2_(p2), a_(radius) {
+  PALPATE_INLINE Disc(const S& p2, const S& depth, F radius) noexcept : z_(depth), p2_(p2), a_(radius) {
     using std::abs;
     using std::sqrt;
     const S re = p2 + z_ * z_ - a_ * a_, im = F(2) * a_ * z_;
-    const S modulus = sqrt(re * re + im * im);
+    const S modulus = sqrt(re * re + im * im);  // |R|^2
     // The root's larger part by sum, the smaller from the product: no cancellation. At the rim R = 0 is held off.
-    const S half = F(0.5) * (modulus + abs(re)), root = sqrt(half), hold = z_ * F(0) + F(1e-4) * a_;
-    const S large = detail::larger(root, hold), small = F(0.5) * im / large;
-    R_ = {detail::where_positive(re, large, small), detail::where_positive(re, small, large)};
+    const S rim = z_ * F(0) + F(1e-4) * a_;
+    const S large = detail::larger(S(sqrt(F(0.5) * (modulus + abs(re)))), rim), small = F(0.5) * im / large;
+    R_.re = detail::where_positive(re, large, small);
+    R_.im = large + small - R_.re;
     const C sum{R_.re + z_, R_.im + a_};
     angle_ = detail::first_quadrant_angle(sum.im, sum.re);
-    w_ = inverse(sum);
-    iR_ = inverse(R_);
+    const S d = F(1) / (sum.re * sum.re + sum.im * sum.im), r = F(1) / detail::larger(modulus, S(rim * rim));
+    w_ = {sum.re * d, -sum.im * d};
+    iR_ = {R_.re * r, -R_.im * r};
     wR_ = w_ * iR_;
     ww_ = w_ * w_;
     wwR_ = ww_ * iR_;
   }
 
   /// Force with normal part fn; fp = t.p with t its tangential part. Flat disc's weight.
-  [[nodiscard]] Field flat(F fn, const S& fp, F nu) const noexcept {
+  [[nodiscard]] PALPATE_INLINE Field flat(F fn, const S& fp, F nu) const noexcept {
     const F b = F(1) - F(2) * nu, s = F(1) / a_;
     const S L_p = -s * w_.im, X_p = F(-0.5) * s * (angle_ + z_ * w_.im + a_ * w_.re);
     return {s * (fn * (b * w_.im - z_ * wR_.im) - fp * (z_ * wwR_.im + nu * ww_.im)),
@@ -141,53 +157,89 @@ class Disc {
             F(2) * s * angle_ - z_ * L_p + F(2) * nu * X_p};
   }
   /// Normal force fn with Hertz's weight.
-  [[nodiscard]] Field hertz(F fn, F nu) const noexcept {
+  [[nodiscard]] PALPATE_INLINE Field hertz(F fn, F nu) const noexcept {
     const F b = F(1) - F(2) * nu, s = F(3) / (a_ * a_ * a_);
-    const S phi = s * ((F(0.5) * (z_ * z_ + a_ * a_) - F(0.25) * p2_) * angle_ - F(0.75) * z_ * R_.im + F(0.25) * a_ * R_.re);
+    const S phi = s * ((F(0.5) * (z_ * z_ + a_ * a_) - F(0.25) * p2_) * angle_ - F(0.75) * z_ * R_.im +
+                       F(0.25) * a_ * R_.re);
     S in_plane = -z_ * hertz_phi_p();
     if (b > F(0)) {
       const C q{z_, z_ * F(0) + a_}, sum = R_ * R_ + R_ * q + q * q;
-      in_plane = in_plane - b * s * (F(-0.5) * (z_ * angle_ - R_.im) - (w_ * sum).im / F(6) + F(0.5) * a_ * (q * w_).re);
+      in_plane = in_plane -
+                 b * s * (F(-0.5) * (z_ * angle_ - R_.im) - (w_ * sum).im / F(6) + F(0.5) * a_ * (q * w_).re);
     }
     return {fn * in_plane, fn * ((F(1) + b) * phi - z_ * hertz_phi_z()), z_ * F(0)};
   }
   /// Radial double force in the disc's plane, sum x.f = 1; weight minus half the gradient of Hertz's.
-  [[nodiscard]] Field double_force(F nu) const noexcept {
+  [[nodiscard]] PALPATE_INLINE Field double_force(F nu) const noexcept {
     const F b = F(1) - F(2) * nu, s = F(3) / (a_ * a_ * a_);
     const S phi_zp = s * (z_ * wR_.im - iR_.im), phi_zz = s * (angle_ - a_ * iR_.re);
-    return {F(-0.5) * ((F(1) + b) * hertz_phi_p() + z_ * phi_zp), F(-0.5) * (z_ * phi_zz - b * hertz_phi_z()), z_ * F(0)};
+    return {F(-0.5) * ((F(1) + b) * hertz_phi_p() + z_ * phi_zp), F(-0.5) * (z_ * phi_zz - b * hertz_phi_z()),
+            z_ * F(0)};
   }
   /// Normal forces with the moment sum x (f.m) = t, tp = t.p; weight minus the gradient of Hertz's. The part with
   /// 1 - 2 nu in the plane is left out.
-  [[nodiscard]] Field tilt(const S& tp, F nu) const noexcept {
+  [[nodiscard]] PALPATE_INLINE Field tilt(const S& tp, F nu) const noexcept {
     const F b = F(1) - F(2) * nu, s = F(3) / (a_ * a_ * a_);
-    const S phi_p = hertz_phi_p(), phi_2 = s * (F(-0.5) * ww_.im - a_ * wwR_.re), phi_zp = s * (z_ * wR_.im - iR_.im);
+    const S phi_p = hertz_phi_p(), phi_2 = s * (F(-0.5) * ww_.im - a_ * wwR_.re),
+            phi_zp = s * (z_ * wR_.im - iR_.im);
     return {z_ * tp * phi_2, tp * (z_ * phi_zp - (F(1) + b) * phi_p), z_ * phi_p};
   }
+
+  /// Forces around the disc's axis with the moment 1 about m: u = twist (m x p), for every nu. A rigid disc's weight.
+  [[nodiscard]] PALPATE_INLINE S twist() const noexcept { return -hertz_phi_p(); }
 
  private:
   struct C {
     S re, im;
-    [[nodiscard]] C operator*(const C& o) const noexcept { return {re * o.re - im * o.im, re * o.im + im * o.re}; }
-    [[nodiscard]] C operator+(const C& o) const noexcept { return {re + o.re, im + o.im}; }
+    [[nodiscard]] PALPATE_INLINE C operator*(const C& o) const noexcept {
+      return {re * o.re - im * o.im, re * o.im + im * o.re};
+    }
+    [[nodiscard]] PALPATE_INLINE C operator+(const C& o) const noexcept { return {re + o.re, im + o.im}; }
   };
-  [[nodiscard]] static C inverse(const C& c) noexcept {
-    const S d = F(1) / (c.re * c.re + c.im * c.im);
-    return {c.re * d, -c.im * d};
+  [[nodiscard]] PALPATE_INLINE S hertz_phi_p() const noexcept {  // d phi / dp / p
+    return F(1.5) / (a_ * a_ * a_) * (a_ * w_.re - angle_ - z_ * w_.im);
   }
-  [[nodiscard]] S hertz_phi_p() const noexcept {  // d phi / dp / p
-    return F(3) / (a_ * a_ * a_) * (F(-0.5) * (angle_ + z_ * w_.im + a_ * w_.re) + a_ * w_.re);
+  [[nodiscard]] PALPATE_INLINE S hertz_phi_z() const noexcept {
+    return F(3) / (a_ * a_ * a_) * (z_ * angle_ - R_.im);
   }
-  [[nodiscard]] S hertz_phi_z() const noexcept { return F(3) / (a_ * a_ * a_) * (z_ * angle_ - R_.im); }
 
   S z_, p2_, angle_;
   F a_;
   C R_, w_, iR_, wR_, ww_, wwR_;  // R, 1/(R + q), 1/R, and products
 };
 
+/// How far a stuck flat disc on a half-space moves per force, times mu [1/m]: (1 - 2 nu) / (4 a ln(3 - 4 nu)) along the
+/// normal, (2 - nu) / (8 a) along the surface. Sources: [spence1968], [mindlin1949].
+struct DiscCompliance {
+  double normal, along;
+};
+[[nodiscard]] inline DiscCompliance disc_compliance(double radius, double nu) noexcept {
+  const double b = 1 - 2 * nu;
+  return {b > 1e-6 ? b / (4 * radius * std::log1p(2 * b)) : 1 / (8 * radius), (2 - nu) / (8 * radius)};
+}
+
+/// Twelve points of the unit disc, equal weights, for means with the stuck disc's weight: two rings, by Gauss's rule in
+/// sqrt(1 - s^2), in which the weight is uniform.
+[[nodiscard]] inline const std::array<std::array<double, 2>, 12>& disc_points() noexcept {
+  static constexpr double h = 0.86602540378443865, r = 0.97741587937861918, q = 0.61481015937592787;
+  static constexpr std::array<std::array<double, 2>, 12> points{{{r, 0},
+                                                                 {0.5 * r, h * r},
+                                                                 {-0.5 * r, h * r},
+                                                                 {-r, 0},
+                                                                 {-0.5 * r, -h * r},
+                                                                 {0.5 * r, -h * r},
+                                                                 {h * q, 0.5 * q},
+                                                                 {0, q},
+                                                                 {-h * q, 0.5 * q},
+                                                                 {-h * q, -0.5 * q},
+                                                                 {0, -q},
+                                                                 {h * q, -0.5 * q}}};
+  return points;
+}
+
 /// 4 pi mu u at r of the force f spread over a stuck flat disc; m: unit normal into the body.
-[[nodiscard]] inline Vec3<double> disc_load(const Vec3<double>& r, const Vec3<double>& m, double depth, double radius, const Vec3<double>& f,
-                                            double nu) noexcept {
+[[nodiscard]] inline Vec3<double> disc_load(const Vec3<double>& r, const Vec3<double>& m, double depth,
+                                            double radius, const Vec3<double>& f, double nu) noexcept {
   const double fn = f.dot(m);
   const Vec3<double> p = r - r.dot(m) * m, t = f - fn * m;
   const auto u = Disc<double>(p.squaredNorm(), (std::max)(depth, 0.0), radius).flat(fn, t.dot(p), nu);

@@ -53,7 +53,7 @@ class NearSource {
     std::vector<std::pair<std::uint32_t, Mat3<double>>> lumps;
     for (std::uint32_t t = 0; t < m.triangles.size(); ++t) {
       const Element& e = bem_.elements()[t];
-      const Vec3d w = closest_weights(s.source, e.corner[0], e.corner[1], e.corner[2]);
+      const Vec3d w = closest_on_triangle<double>(s.source, e.corner[0], e.corner[1], e.corner[2]);
       const double distance = (w[0] * e.corner[0] + w[1] * e.corner[1] + w[2] * e.corner[2] - s.source).norm();
       if (distance > 2.2 * s.size) continue;
       scratch.clear();

@@ -8,10 +8,13 @@
 ///     x = p - 1/2 sum l_i ((p - p_i) . n_i) n_i
 /// The factor 1/2 makes it exact to third order for a quadric. Source: [boubekeur2008].
 
-#include <palpate/response/triangle_tree.hpp>
+#include <palpate/surface/bvh.hpp>
 
+#include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
+#include <vector>
 
 namespace palpate {
 
@@ -115,7 +118,7 @@ class SmoothSurface {
       for (std::uint32_t v : mesh_.triangles[i])
         if (v >= mesh_.vertices.size()) fail_at(where, "triangle corners must be vertices", "triangle", i, v);
     edges_ = mesh_edges(mesh_.triangles, where);
-    tree_ = TriangleTree<double>(mesh_);
+    tree_.emplace(mesh_);
     const auto face = [&](std::uint32_t t) {
       const auto& c = mesh_.triangles[t];
       return area_vector(mesh_.vertices[c[0]], mesh_.vertices[c[1]], mesh_.vertices[c[2]]);
@@ -151,7 +154,7 @@ class SmoothSurface {
   [[nodiscard]] bool is_crease(std::size_t edge) const noexcept { return crease_[edge] != 0; }
 
   /// Position and unit normal of the smooth surface at a place of the mesh.
-  void evaluate(const MeshPoint<double>& at, Vec3<double>& position, Vec3<double>& normal) const noexcept {
+  void evaluate(const TriangleBvh<double>::Nearest& at, Vec3<double>& position, Vec3<double>& normal) const noexcept {
     const auto& t = mesh_.triangles[at.triangle];
     Vec3<double> bulge = Vec3<double>::Zero();
     normal.setZero();
@@ -166,12 +169,12 @@ class SmoothSurface {
   /// The smooth surface's point near x.
   [[nodiscard]] Vec3<double> project(const Vec3<double>& x) const noexcept {
     Vec3<double> p, n;
-    evaluate(tree_.closest(x), p, n);
+    evaluate(tree_->closest(x), p, n);
     return p;
   }
   [[nodiscard]] Vec3<double> normal_at(const Vec3<double>& x) const noexcept {
     Vec3<double> p, n;
-    evaluate(tree_.closest(x), p, n);
+    evaluate(tree_->closest(x), p, n);
     return n;
   }
 
@@ -180,7 +183,7 @@ class SmoothSurface {
   std::vector<detail::MeshEdge> edges_;
   std::vector<std::uint8_t> crease_;
   std::vector<Vec3<double>> corner_normal_;  // 3 per triangle
-  TriangleTree<double> tree_;
+  std::optional<TriangleBvh<double>> tree_;
 };
 
 }  // namespace palpate

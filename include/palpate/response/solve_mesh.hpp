@@ -95,6 +95,31 @@ namespace detail {
   return out;
 }
 
+/// A piece that nothing holds can move freely: the boundary equation has no single solution. Hollows need not be held.
+inline void require_each_piece_held(const MeshData<double>& mesh, const std::vector<std::uint8_t>& fixed_triangle) {
+  std::vector<std::uint32_t> parent(mesh.vertices.size());
+  for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = v;
+  const auto root = [&](std::uint32_t v) {
+    while (parent[v] != v) v = parent[v] = parent[parent[v]];
+    return v;
+  };
+  for (const auto& t : mesh.triangles) {
+    parent[root(t[1])] = root(t[0]);
+    parent[root(t[2])] = root(t[0]);
+  }
+  std::vector<double> volume(mesh.vertices.size(), 0);
+  std::vector<std::uint8_t> held(mesh.vertices.size(), 0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& c = mesh.triangles[t];
+    const std::uint32_t r = root(c[0]);
+    const Vec3d& origin = mesh.vertices[r];
+    volume[r] += (mesh.vertices[c[0]] - origin).dot((mesh.vertices[c[1]] - origin).cross(mesh.vertices[c[2]] - origin));
+    if (fixed_triangle[t]) held[r] = 1;
+  }
+  for (std::size_t v = 0; v < volume.size(); ++v)
+    if (volume[v] > 0 && !held[v]) fail_at("make_solve_mesh", "each piece of the mesh must be held somewhere: nothing holds the one", "with vertex", v);
+}
+
 /// Geometry of the solve mesh from a remeshed surface: nodes, normals, edge middles, source places.
 [[nodiscard]] inline SolveMesh finish_solve_mesh(const SmoothSurface& surface, const Remesher& made) {
   SolveMesh m;
@@ -190,7 +215,7 @@ namespace detail {
 }  // namespace detail
 
 /// Makes the solve mesh. `fixed_triangle` marks triangles of the surface's mesh where the object is held.
-/// Reports a fixed region without a triangle, or one that is the whole surface.
+/// Reports a fixed region without a triangle, one that is the whole surface, and a piece that is not held.
 [[nodiscard]] inline SolveMesh make_solve_mesh(const SmoothSurface& surface, const std::vector<std::uint8_t>& fixed_triangle,
                                                const RemeshParams& params = {}) {
   const char* where = "make_solve_mesh";
@@ -201,6 +226,7 @@ namespace detail {
   for (auto f : fixed_triangle) held += f;
   if (held == 0) fail(where, "the fixed region must hold at least one whole triangle");
   if (held == fixed_triangle.size()) fail(where, "the fixed region must leave some triangles free");
+  detail::require_each_piece_held(surface.mesh(), fixed_triangle);
   detail::Remesher remesher(surface, fixed_triangle, params);
   remesher.run();
   return detail::finish_solve_mesh(surface, remesher);

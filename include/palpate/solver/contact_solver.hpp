@@ -21,6 +21,7 @@
 #include <palpate/solver/gather.hpp>
 // clang-format on
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <span>
@@ -128,6 +129,11 @@ class ContactSolver {
   }
 
   [[nodiscard]] const Object& object() const noexcept { return object_; }
+  /// For objects that follow a deformation (detection/deformed_surface.hpp): the next tick is worked out anew.
+  [[nodiscard]] Object& mutable_object() noexcept {
+    last_.ticks = (std::min)(last_.ticks, 1);
+    return object_;
+  }
   [[nodiscard]] const Tool& tool() const noexcept { return tool_; }
   [[nodiscard]] const Force& force_law() const noexcept { return force_; }
   [[nodiscard]] const Friction& friction_law() const noexcept { return friction_; }

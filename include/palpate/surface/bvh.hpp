@@ -17,9 +17,10 @@ namespace palpate {
 
 /// Tree over the triangles of a mesh; keeps a copy of the vertices. No equation.
 ///
-/// Set-up is n log n (bvh_build.hpp). Nodes lie in one array, siblings together, children after their parent;
-/// leaves hold at most 4 triangles; depth is at most 62. The constructor reports a list without triangles, a
-/// bad index, or a vertex that is not finite or beyond 1e6 m.
+/// Set-up is n log n (bvh_build.hpp). Nodes lie in one array, siblings together, children after their parent; a
+/// node has up to eight children, boxes or triangles, whose boxes are tested at once. Boxes are in float and
+/// only decide what is looked at: every answer is computed from the triangles in S. The constructor reports
+/// a list without triangles, a bad index, or a vertex that is not finite or beyond 1e6 m.
 ///
 /// Queries and moves take no heap; each ends after at most one visit to every node. Non-finite queries:
 /// closest() gives the start triangle, raycast() and overlap() nothing. A vertex moved to a place that is not
@@ -28,10 +29,8 @@ template <Real S>
 class TriangleBvh {
  public:
   using Triangle = std::array<std::uint32_t, 3>;
+  using Node = detail::BvhNode;
   static constexpr std::uint32_t none = (std::numeric_limits<std::uint32_t>::max)();
-  static constexpr std::uint32_t leaf_size = detail::bvh_leaf_size;
-
-  using Node = detail::BvhNode<S>;
 
   /// A point of the mesh: sum of weight[k] times corner k of the triangle.
   struct Nearest {
@@ -57,12 +56,15 @@ class TriangleBvh {
     for (std::size_t v = 0; v < vertices_.size(); ++v)
       if (!usable(vertices_[v])) fail_at("TriangleBvh", "place must be finite and below 1e6 m", "vertex", v);
     std::vector<Box> boxes(n);
-    for (std::size_t t = 0; t < n; ++t)
+    Box all;
+    for (std::size_t t = 0; t < n; ++t) {
       for (const std::uint32_t v : triangles_[t]) boxes[t].add(vertices_[v], vertices_[v]);
-    detail::BvhBuild<S> made(boxes);
-    nodes_ = std::move(made.nodes);
-    order_ = std::move(made.order);
+      all.add(boxes[t].low, boxes[t].high);
+    }
+    origin_ = all.low + (all.high - all.low) / S(2);
+    nodes_ = std::move(detail::BvhBuild<S>(boxes).nodes);
     link();
+    refit_all();
   }
 
   /// The point of the mesh closest to x; the first found of equal ones. A good `start` triangle saves much of
@@ -87,42 +89,91 @@ class TriangleBvh {
                            const Visit& visit) const noexcept {
     Nearest best = on_triangle(x, start);
     if (!is_finite(best.distance2)) return best;
+    const Cull cull = this->cull(x);
+    S bound = grow(best.distance2);
+    float limit = cull.limit(bound);
+    walk(
+        cull, limit, [](std::uint32_t, std::size_t, float) { return true; },
+        [&](std::uint32_t triangle) {
+          const Nearest here = on_triangle(x, triangle);
+          if (here.distance2 > bound) return;
+          visit(here);
+          if (!(here.distance2 < best.distance2)) return;
+          best = here;
+          bound = grow(best.distance2);
+          limit = cull.limit(bound);
+        });
+    return best;
+  }
+
+  /// A query point as the boxes see it.
+  struct Cull {
+    std::array<float, 3> x;
+    S slack;  // [m], more than the rounding of a distance to a box; < 0: too far for float, look at everything
+    /// What a squared distance to a box must not exceed for the box to hold something at d2 or nearer.
+    [[nodiscard]] float limit(S d2) const noexcept {
+      if (slack < S(0)) return (std::numeric_limits<float>::max)();
+      const S d = std::sqrt(d2) + slack;
+      return static_cast<float>((std::min)(d * d * S(1.000002L), S(1e38L)));
+    }
+  };
+  [[nodiscard]] Cull cull(const Vec3<S>& x) const noexcept {
+    const Vec3<S> e = x - origin_;
+    const S size = e.cwiseAbs().maxCoeff();
+    if (!(size < S(1e15L))) return {{0, 0, 0}, S(-1)};
+    return {{static_cast<float>(e.x()), static_cast<float>(e.y()), static_cast<float>(e.z())},
+            S(4) * S(std::numeric_limits<float>::epsilon()) * (size + reach_)};
+  }
+
+  /// Calls visit(triangle) for every triangle whose box is within `limit` (squared, from Cull), unless
+  /// enter(node, child, squared distance) is false for a box around it. Of siblings the nearest comes first;
+  /// `limit` may fall meanwhile.
+  template <class Enter, class Visit>
+  void walk(const Cull& cull, const float& limit, const Enter& enter, const Visit& visit) const noexcept {
     std::array<Entry, stack_size> stack;
     std::size_t top = 0;
-    S bound = grow(best.distance2);
-    stack[top++] = {0, nodes_[0].distance2(x)};
-    while (top > 0) {
-      const Entry entry = stack[--top];
-      if (entry.distance2 > bound) continue;
-      const Node* node = &nodes_[entry.node];
-      while (node->count == 0) {
-        const std::uint32_t left = node->first;
-        const S l = nodes_[left].distance2(x), r = nodes_[left + 1].distance2(x);
-        const bool left_first = l <= r;
-        const S farther = left_first ? r : l;
-        if (farther <= bound) stack[top++] = {left_first ? left + 1 : left, farther};
-        if ((left_first ? l : r) > bound) break;
-        node = &nodes_[left_first ? left : left + 1];
+    Entry here{0, 0.0f};
+    for (;;) {
+      const Node& node = nodes_[here.node];
+      std::array<float, Node::width> d2;
+      distances(node, cull.x, d2);
+      Entry next{none, 0.0f};
+      for (std::uint32_t i = 0; i < node.count; ++i) {
+        if (!(d2[i] <= limit) || !enter(here.node, i, d2[i])) continue;
+        if (node.leaf != 0) {
+          visit(node.child[i]);
+        } else if (next.node == none) {
+          next = {node.child[i], d2[i]};
+        } else if (d2[i] < next.distance2) {
+          stack[top++] = next;
+          next = {node.child[i], d2[i]};
+        } else {
+          stack[top++] = {node.child[i], d2[i]};
+        }
       }
-      for (std::uint32_t i = node->first; i < node->first + node->count; ++i) {
-        const Nearest here = on_triangle(x, order_[i]);
-        if (here.distance2 > bound) continue;
-        visit(here);
-        if (!(here.distance2 < best.distance2)) continue;
-        best = here;
-        bound = grow(best.distance2);
+      while (next.node == none) {
+        if (top == 0) return;
+        --top;
+        if (stack[top].distance2 <= limit) next = stack[top];
       }
+      here = next;
     }
-    return best;
   }
 
   /// The point of one triangle closest to x.
   [[nodiscard]] Nearest on_triangle(const Vec3<S>& x, std::uint32_t triangle) const noexcept {
     const Triangle& t = triangles_[triangle];
     const Vec3<S>&a = vertices_[t[0]], &b = vertices_[t[1]], &c = vertices_[t[2]];
-    const Vec3<S> weight = detail::closest_on_triangle<S>(x, a, b, c);
-    const Vec3<S> position = weight[0] * a + weight[1] * b + weight[2] * c;
-    return {triangle, weight, position, (x - position).squaredNorm()};
+    Nearest here;
+    here.triangle = triangle;
+    here.weight = detail::closest_on_triangle<S>(x, a, b, c);
+    // Coordinate by coordinate: Eigen's expressions are not inlined here by gcc 12 at -O2.
+    const S u = here.weight[0], v = here.weight[1], w = here.weight[2];
+    here.position = Vec3<S>(u * a[0] + v * b[0] + w * c[0], u * a[1] + v * b[1] + w * c[1],
+                            u * a[2] + v * b[2] + w * c[2]);
+    const S ex = x[0] - here.position[0], ey = x[1] - here.position[1], ez = x[2] - here.position[2];
+    here.distance2 = ex * ex + ey * ey + ez * ez;
+    return here;
   }
 
   /// First triangle on the ray origin + t direction, t >= 0, either side; no ray passes between neighbours.
@@ -137,56 +188,58 @@ class TriangleBvh {
     Vec3<S> inverse;
     for (int i = 0; i < 3; ++i) inverse[i] = S(1) / (std::abs(d[i]) > S(1e-20L) ? d[i] : S(1e-20L));
     // More than the rounding of a place on the ray: a grazed box must not be missed.
-    const S guard = S(8) * std::numeric_limits<S>::epsilon() *
-                    (std::max)({origin.cwiseAbs().maxCoeff(), nodes_[0].low.cwiseAbs().maxCoeff(),
-                                nodes_[0].high.cwiseAbs().maxCoeff()});
-    std::array<Entry, stack_size> stack;
+    const Vec3<S> from = origin - origin_;
+    const S guard = S(4) * S(std::numeric_limits<float>::epsilon()) * reach_ +
+                    S(8) * std::numeric_limits<S>::epsilon() *
+                        (origin.cwiseAbs().maxCoeff() + origin_.cwiseAbs().maxCoeff());
+    std::array<std::uint32_t, stack_size> stack;
+    std::array<S, stack_size> enters;
     std::size_t top = 0;
-    stack[top++] = {0, S(0)};
+    stack[0] = 0;
+    enters[top++] = S(0);
     while (top > 0) {
-      const Entry entry = stack[--top];
-      if (!(entry.distance2 < best.t)) continue;
-      const Node& node = nodes_[entry.node];
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        const Triangle& t = triangles_[order_[i]];
-        S along;
-        Vec3<S> weight;
-        if (ray.hit(t, vertices_[t[0]], vertices_[t[1]], vertices_[t[2]], along, weight) && along < best.t)
-          best = {order_[i], weight, along};
+      --top;
+      if (!(enters[top] < best.t)) continue;
+      const Node& node = nodes_[stack[top]];
+      const std::size_t bottom = top;
+      for (std::size_t i = 0; i < node.count; ++i) {
+        const S in = enter(node, i, from, inverse, guard);
+        if (!(in < best.t)) continue;
+        if (node.leaf != 0) {
+          const Triangle& t = triangles_[node.child[i]];
+          S along;
+          Vec3<S> weight;
+          if (ray.hit(t, vertices_[t[0]], vertices_[t[1]], vertices_[t[2]], along, weight) && along < best.t)
+            best = {node.child[i], weight, along};
+          continue;
+        }
+        // Nearest on top.
+        std::size_t place = top++;
+        for (; place > bottom && enters[place - 1] < in; --place) {
+          enters[place] = enters[place - 1];
+          stack[place] = stack[place - 1];
+        }
+        enters[place] = in;
+        stack[place] = node.child[i];
       }
-      if (node.count > 0) continue;
-      const S l = enters(nodes_[node.first], origin, inverse, guard),
-              r = enters(nodes_[node.first + 1], origin, inverse, guard);
-      const bool left_first = l <= r;
-      const Entry near{left_first ? node.first : node.first + 1, left_first ? l : r},
-          other{left_first ? node.first + 1 : node.first, left_first ? r : l};
-      if (other.distance2 < best.t) stack[top++] = other;
-      if (near.distance2 < best.t) stack[top++] = near;
     }
     if (best.triangle != none) best.t /= scale;
     if (!is_finite(best.t)) best.triangle = none;
     return best;
   }
 
-  /// Calls visit(nearest) for every triangle strictly nearer to x than `radius` [m], in the tree's order.
+  /// Calls visit(nearest) for every triangle strictly nearer to x than `radius` [m].
   template <class Visit>
   void overlap(const Vec3<S>& x, S radius, const Visit& visit) const noexcept {
     const S limit = radius * radius;
     if (!is_finite(x) || !is_finite(limit)) return;
-    std::array<std::uint32_t, stack_size> stack;
-    std::size_t top = 0;
-    stack[top++] = 0;
-    while (top > 0) {
-      const Node& node = nodes_[stack[--top]];
-      if (!(node.distance2(x) < limit)) continue;
-      for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-        const Nearest here = on_triangle(x, order_[i]);
-        if (here.distance2 < limit) visit(here);
-      }
-      if (node.count > 0) continue;
-      stack[top++] = node.first + 1;
-      stack[top++] = node.first;
-    }
+    const Cull cull = this->cull(x);
+    walk(
+        cull, cull.limit(limit), [](std::uint32_t, std::size_t, float) { return true; },
+        [&](std::uint32_t triangle) {
+          const Nearest here = on_triangle(x, triangle);
+          if (here.distance2 < limit) visit(here);
+        });
   }
 
   /// Puts vertex which[i] at place[i] [m] and refits the boxes above its triangles. Cost: those boxes.
@@ -203,32 +256,31 @@ class TriangleBvh {
         for (std::uint32_t n = leaf_[k]; n != none && stamp_[n] != epoch_; n = parent_[n]) stamp_[n] = epoch_;
       }
     }
-    refit_stamped(0);
+    if (stamp_[0] == epoch_) refit_stamped(0);
+    measure();
   }
 
   /// Puts every vertex at its place [m]; linear.
   void move_all(std::span<const Vec3<S>> place) noexcept {
     for (std::size_t v = 0; v < vertices_.size(); ++v)
       if (usable(place[v])) vertices_[v] = place[v];
-    for (std::size_t n = nodes_.size(); n-- > 0;) refit(nodes_[n]);
+    refit_all();
   }
 
   [[nodiscard]] std::span<const Vec3<S>> vertices() const noexcept { return vertices_; }
   [[nodiscard]] std::span<const Triangle> triangles() const noexcept { return triangles_; }
-  /// The root first.
+  /// The root first; boxes are relative to origin().
   [[nodiscard]] std::span<const Node> nodes() const noexcept { return nodes_; }
-  /// The triangle at each place of the leaves.
-  [[nodiscard]] std::span<const std::uint32_t> order() const noexcept { return order_; }
-
-  static constexpr std::size_t stack_size =
-      64;  ///< > depth: a walk keeps at most one node of each level, and one
+  [[nodiscard]] const Vec3<S>& origin() const noexcept { return origin_; }
 
  private:
   static constexpr S far = S(1e6L) * S(1e6L);
+  // A walk keeps at most seven nodes of each of 62 levels, and eight.
+  static constexpr std::size_t stack_size = 448;
 
   struct Entry {
     std::uint32_t node;
-    S distance2;  // to a box; for rays t
+    float distance2;
   };
   using Box = detail::BvhBox<S>;
 
@@ -236,31 +288,69 @@ class TriangleBvh {
     return is_finite(p) && p.cwiseAbs().maxCoeff() <= S(1e6L);
   }
 
-  /// Where the ray enters a box that is widened by `guard` [m]; beyond every t when it misses.
-  [[nodiscard]] static S enters(const Node& node, const Vec3<S>& origin, const Vec3<S>& inverse,
-                                S guard) noexcept {
-    const Vec3<S> a = (node.low - origin - Vec3<S>::Constant(guard)).cwiseProduct(inverse);
-    const Vec3<S> b = (node.high - origin + Vec3<S>::Constant(guard)).cwiseProduct(inverse);
-    const S in = a.cwiseMin(b).maxCoeff(), out = a.cwiseMax(b).minCoeff();
-    return out >= S(0) && in <= out ? (std::max)(in, S(0)) : (std::numeric_limits<S>::max)();
+  /// Squared distances to all eight boxes.
+  static void distances(const Node& node, const std::array<float, 3>& x,
+                        std::array<float, Node::width>& d2) noexcept {
+    using Lanes = Eigen::Array<float, Node::width, 1>;
+    using In = Eigen::Map<const Lanes, Eigen::Unaligned>;
+    const In ux(node.low[0].data()), vx(node.high[0].data()), uy(node.low[1].data()), vy(node.high[1].data()),
+        uz(node.low[2].data()), vz(node.high[2].data());
+    Eigen::Map<Lanes, Eigen::Unaligned>(d2.data()) = (ux - x[0]).max(x[0] - vx).max(0.0f).square() +
+                                                     (uy - x[1]).max(x[1] - vy).max(0.0f).square() +
+                                                     (uz - x[2]).max(x[2] - vz).max(0.0f).square();
+  }
+
+  /// Where the ray enters child i's box, widened by `guard` [m]; beyond every t when it misses.
+  [[nodiscard]] static S enter(const Node& node, std::size_t i, const Vec3<S>& from, const Vec3<S>& inverse,
+                               S guard) noexcept {
+    S in = S(0), out = (std::numeric_limits<S>::max)();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<int>(k);
+      const S a = (static_cast<S>(node.low[k][i]) - from[axis] - guard) * inverse[axis],
+              b = (static_cast<S>(node.high[k][i]) - from[axis] + guard) * inverse[axis];
+      in = (std::max)(in, (std::min)(a, b));
+      out = (std::min)(out, (std::max)(a, b));
+    }
+    return in <= out ? in : (std::numeric_limits<S>::max)();
   }
 
   void refit(Node& node) noexcept {
-    Box box;
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i)
-      for (const std::uint32_t v : triangles_[order_[i]]) box.add(vertices_[v], vertices_[v]);
-    if (node.count == 0)
-      for (std::uint32_t k = 0; k < 2; ++k) box.add(nodes_[node.first + k].low, nodes_[node.first + k].high);
-    node.low = box.low;
-    node.high = box.high;
+    for (std::size_t i = 0; i < node.count; ++i) {
+      if (node.leaf != 0) {
+        const Triangle& t = triangles_[node.child[i]];
+        const Vec3<S>&a = vertices_[t[0]], &b = vertices_[t[1]], &c = vertices_[t[2]];
+        const Vec3<S> low = a.cwiseMin(b).cwiseMin(c) - origin_, high = a.cwiseMax(b).cwiseMax(c) - origin_;
+        for (std::size_t k = 0; k < 3; ++k) {
+          node.low[k][i] = static_cast<float>(low[static_cast<int>(k)]);
+          node.high[k][i] = static_cast<float>(high[static_cast<int>(k)]);
+        }
+      } else {
+        const Node& child = nodes_[node.child[i]];
+        for (std::size_t k = 0; k < 3; ++k) {
+          node.low[k][i] = *std::min_element(child.low[k].begin(), child.low[k].begin() + child.count);
+          node.high[k][i] = *std::max_element(child.high[k].begin(), child.high[k].begin() + child.count);
+        }
+      }
+    }
+  }
+  void refit_all() noexcept {
+    for (std::size_t n = nodes_.size(); n-- > 0;) refit(nodes_[n]);
+    measure();
   }
   void refit_stamped(std::uint32_t n) noexcept {  // recursion to the tree's depth, at most 62
-    if (stamp_[n] != epoch_) return;
-    if (nodes_[n].count == 0) {
-      refit_stamped(nodes_[n].first);
-      refit_stamped(nodes_[n].first + 1);
+    Node& node = nodes_[n];
+    for (std::size_t i = 0; i < node.count && node.leaf == 0; ++i)
+      if (stamp_[node.child[i]] == epoch_) refit_stamped(node.child[i]);
+    refit(node);
+  }
+  // Largest coordinate relative to the origin.
+  void measure() noexcept {
+    reach_ = S(0);
+    for (std::size_t i = 0; i < nodes_[0].count; ++i) {
+      for (std::size_t k = 0; k < 3; ++k)
+        reach_ =
+            (std::max)({reach_, static_cast<S>(-nodes_[0].low[k][i]), static_cast<S>(nodes_[0].high[k][i])});
     }
-    refit(nodes_[n]);
   }
 
   // Parents, and the leaves of every vertex, for move().
@@ -271,9 +361,12 @@ class TriangleBvh {
     for (int pass = 0; pass < 2; ++pass) {  // count, then fill
       for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
         const Node& node = nodes_[n];
-        if (node.count == 0) parent_[node.first] = parent_[node.first + 1] = n;
-        for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-          for (const std::uint32_t v : triangles_[order_[i]]) {
+        for (std::size_t i = 0; i < node.count; ++i) {
+          if (node.leaf == 0) {
+            parent_[node.child[i]] = n;
+            continue;
+          }
+          for (const std::uint32_t v : triangles_[node.child[i]]) {
             if (pass == 0)
               ++leaf_start_[v + 1];
             else
@@ -294,7 +387,9 @@ class TriangleBvh {
   std::vector<Vec3<S>> vertices_;
   std::vector<Triangle> triangles_;
   std::vector<Node> nodes_;
-  std::vector<std::uint32_t> order_, parent_, leaf_start_, leaf_, stamp_;
+  std::vector<std::uint32_t> parent_, leaf_start_, leaf_, stamp_;
+  Vec3<S> origin_;  // middle of the box at set-up
+  S reach_{};
   std::uint32_t epoch_ = 0;
 };
 

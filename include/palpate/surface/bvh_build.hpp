@@ -27,36 +27,33 @@ struct BvhBox {
   }
 };
 
-template <Real S>
+/// Boxes of up to eight children, coordinate by coordinate and in float, relative to the tree's origin.
 struct BvhNode {
-  Vec3<S> low, high;
-  std::uint32_t first;  // inner: the left child, the right one follows; leaf: place of the first triangle
-  std::uint32_t count;  // 0: inner
-  [[nodiscard]] S distance2(const Vec3<S>& x) const noexcept {
-    return (low - x).cwiseMax(x - high).cwiseMax(S(0)).squaredNorm();
-  }
+  static constexpr std::size_t width = 8;
+  std::array<std::array<float, width>, 3> low, high;  // [m]
+  std::array<std::uint32_t, width> child;             // leaf: triangles; else nodes
+  std::uint32_t count;                                // children; boxes past them are never looked at
+  std::uint32_t leaf;                                 // 1 or 0
 };
 
-inline constexpr std::uint32_t bvh_leaf_size = 4;
-
-/// Splits along the longest axis of the centres, where area times count is least over 16 bins [wald2007].
-/// Siblings lie together, children after their parent; depth is at most 62.
+/// Splits in two along the longest axis of the centres, where area times count is least over 16 bins
+/// [wald2007], until at most eight triangles are left; then pairs are opened, the larger first, until a node has
+/// eight children [wald2008]. Children come after their parent; depth is at most 62. Boxes are left empty.
 template <Real S>
 class BvhBuild {
  public:
-  std::vector<BvhNode<S>> nodes;     // the root first
-  std::vector<std::uint32_t> order;  // items by place in the leaves
+  std::vector<BvhNode> nodes;  // the root first
 
   explicit BvhBuild(std::span<const BvhBox<S>> boxes) {
     std::vector<Item> items;
     items.reserve(boxes.size());
     for (const Box& box : boxes)
       items.push_back({box.low, box.high, static_cast<std::uint32_t>(items.size())});
-    nodes.reserve(items.size());
-    nodes.emplace_back();
+    pairs_.reserve(items.size());
+    pairs_.emplace_back();
     split(items, 0, 0, static_cast<std::uint32_t>(items.size()), 0);
-    order.reserve(items.size());
-    for (const Item& item : items) order.push_back(item.triangle);
+    nodes.emplace_back();
+    widen(items, 0, 0);
   }
 
  private:
@@ -69,6 +66,10 @@ class BvhBuild {
     std::uint32_t triangle;
     [[nodiscard]] S centre(int axis) const noexcept { return low[axis] + high[axis]; }  // twice
   };
+  struct Pair {
+    std::uint32_t begin, end;  // items
+    std::uint32_t left = 0;    // 0: not split; the right one follows
+  };
 
   void split(std::vector<Item>& items, std::size_t index, std::uint32_t begin, std::uint32_t end, int depth) {
     Box box, centres;
@@ -77,8 +78,8 @@ class BvhBuild {
       const Vec3<S> c = items[i].low + items[i].high;
       centres.add(c, c);
     }
-    nodes[index] = {box.low, box.high, begin, end - begin};
-    if (end - begin <= bvh_leaf_size) return;
+    pairs_[index] = {begin, end};
+    if (end - begin <= BvhNode::width) return;
     int axis = 0;
     (centres.high - centres.low).maxCoeff(&axis);
     const auto from = items.begin() + begin, to = items.begin() + end;
@@ -92,13 +93,42 @@ class BvhBuild {
       });
     }
     const auto cut = begin + static_cast<std::uint32_t>(middle - from);
-    const std::size_t left = nodes.size();
-    nodes[index].first = static_cast<std::uint32_t>(left);
-    nodes[index].count = 0;
-    nodes.emplace_back();
-    nodes.emplace_back();
+    const std::size_t left = pairs_.size();
+    pairs_[index].left = static_cast<std::uint32_t>(left);
+    pairs_.emplace_back();
+    pairs_.emplace_back();
     split(items, left, begin, cut, depth + 1);
     split(items, left + 1, cut, end, depth + 1);
+  }
+
+  void widen(const std::vector<Item>& items, std::size_t index, std::uint32_t pair) {
+    std::array<std::uint32_t, BvhNode::width> child{};
+    std::uint32_t count = 0;
+    const Pair& p = pairs_[pair];
+    const bool leaf = p.left == 0;
+    if (leaf) {
+      for (std::uint32_t i = p.begin; i < p.end; ++i) child[count++] = items[i].triangle;
+    } else {
+      child = {p.left, p.left + 1};
+      count = 2;
+      while (count < BvhNode::width) {
+        std::uint32_t largest = count, most = 0;
+        for (std::uint32_t i = 0; i < count; ++i) {
+          const Pair& c = pairs_[child[i]];
+          if (c.left != 0 && c.end - c.begin > most) largest = i, most = c.end - c.begin;
+        }
+        if (largest == count) break;
+        const std::uint32_t left = pairs_[child[largest]].left;
+        child[largest] = left;
+        child[count++] = left + 1;
+      }
+    }
+    nodes[index].count = count;
+    nodes[index].leaf = leaf ? 1 : 0;
+    const auto first = static_cast<std::uint32_t>(nodes.size());
+    if (!leaf) nodes.resize(nodes.size() + count);
+    for (std::uint32_t i = 0; i < count; ++i) nodes[index].child[i] = leaf ? child[i] : first + i;
+    for (std::uint32_t i = 0; i < count && !leaf; ++i) widen(items, first + i, child[i]);
   }
 
   // Cut with the least sum of area times count; `from` where all centres fall into one bin.
@@ -139,6 +169,8 @@ class BvhBuild {
     }
     return std::partition(from, to, [&](const Item& item) { return bin(item) <= best; });
   }
+
+  std::vector<Pair> pairs_;
 };
 
 }  // namespace palpate::detail

@@ -10,6 +10,8 @@
 /// | `Box`            | cuboid                                  | flat faces; force rounds off over the edges        |
 /// | `Cylinder`       | solid with flat caps, axis y            | ditto                                              |
 /// | `Superellipsoid` | between box, ellipsoid and cylinder     | rounded boxes and pills                            |
+/// | `MeshSurface`    | any closed triangle mesh                | a shape from a file; exact distance to it          |
+/// | `SampledSurface` | samples of one of the others            | a mesh or superellipsoid in a fast tick            |
 ///
 /// Coordinates are the object's own [m]; give the tool's pose in them. A surface holds no state that a query
 /// changes, uses no heap in a query, and gives the same bits for the same input.

@@ -243,8 +243,15 @@ class Ellipsoid {
       qz[i] *= bz;
       m[i] = qx[i] * qx[i] + qy[i] * qy[i] + qz[i] * qz[i];
     }
-    Eigen::Map<Eigen::Array<S, N, 1>> length(m);
-    length = length.sqrt();  // Eigen's: std::sqrt may set errno, so a compiler takes it one by one
+    // Four by Eigen's, because std::sqrt may set errno, and then a compiler takes it one by one.
+    if constexpr (N % 4 == 0) {
+      for (int i = 0; i < N; i += 4) {
+        Eigen::Map<Eigen::Array<S, 4, 1>> length(m + i);
+        length = length.sqrt();
+      }
+    } else {
+      for (int i = 0; i < N; ++i) m[i] = std::sqrt(m[i]);
+    }
     for (int i = 0; i < N; ++i) {
       const S r = S(1) / m[i];
       depth[i] = -s[i] * scale * m[i];

@@ -12,6 +12,7 @@
 /// | `Cylinder`       | 8: on each rim the ends of x and z                 | the rims are extremal all along               |
 /// | `Superellipsoid` | 14: ends of the axes, and the points of the        | flattest and sharpest points for every        |
 /// |                  | surface in the 8 directions of its box's vertices  | pair of exponents                             |
+/// | `MeshSurface`    | estimated: mesh_extremal_points.hpp                | any mesh                                      |
 ///
 /// Each choice has every mirror symmetry of its body. Points are in object coordinates [m], set-up only.
 ///

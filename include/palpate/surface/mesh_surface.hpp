@@ -4,9 +4,9 @@
 /// @file  Any closed triangle mesh as the elastic object: exact distance, a force direction without clicks.
 
 #include <palpate/core/fixed_vector.hpp>
-#include <palpate/surface/bvh.hpp>
 #include <palpate/surface/crease_normals.hpp>
 #include <palpate/surface/distance_grid.hpp>
+#include <palpate/surface/near_blend.hpp>
 #include <palpate/surface/shape_tools.hpp>
 #include <palpate/surface/triangle_mesh.hpp>
 
@@ -59,8 +59,8 @@ class MeshSurface {
         upper_(mesh.upper()),
         centroid_(mesh.centroid()),
         volume_(mesh.volume()),
-        // Edge of the equilateral triangle of mean area.
-        edge_(std::sqrt(mesh.area() * S(2.3094L) / static_cast<S>(mesh.triangles().size()))),
+        edge_(detail::mean_edge(mesh.area(), mesh.triangles().size())),
+        blend_(edge_),
         grid_(
             lower_, upper_,
             (std::clamp)(4 * mesh.triangles().size(), std::size_t(4096), std::size_t(1000000)),
@@ -103,9 +103,7 @@ class MeshSurface {
     const auto bounds = grid_.at(x);
     if (bounds.lower > S(0)) return {S(0), Vec3<S>::Zero()};
     Seen seen;
-    const Nearest near = bvh_.closest_and_near(
-        x, bounds.triangle, [this](S d2) { return banded(std::sqrt(d2)); },
-        [&seen](const Nearest& n) { seen.add(n); });
+    const Nearest near = blend_.search(bvh_, x, bounds.triangle, seen);
     const S d = -distance(x, near);
     if (!(d > S(0))) return {S(0), Vec3<S>::Zero()};
     return {d, normals_.patches == 1 ? patch_direction(x, near, d, seen) : direction(x, near, d)};
@@ -159,18 +157,8 @@ class MeshSurface {
 
  private:
   using Nearest = typename TriangleBvh<S>::Nearest;
+  using Seen = detail::Seen<S>;
   static constexpr std::uint32_t mixed = TriangleBvh<S>::none;
-
-  /// What a search met, as far as there is room.
-  struct Seen {
-    std::array<std::uint32_t, 64> triangle;
-    std::array<S, 64> distance2;
-    std::size_t count = 0;
-    void add(const Nearest& n) noexcept {
-      if (count < triangle.size()) triangle[count] = n.triangle, distance2[count] = n.distance2;
-      ++count;
-    }
-  };
 
   [[nodiscard]] static S checked(const Params& p) {
     if (!is_finite(p.crease) || !(p.crease >= S(0) && p.crease <= S(3.15L)))
@@ -210,34 +198,13 @@ class MeshSurface {
     return normals_.face[at.triangle] + normals_.face[normals_.twin[3 * at.triangle + (zero + 1) % 3] / 3];
   }
 
-  /// ((1 + e) d)^2
-  [[nodiscard]] S banded(S d) const noexcept {
-    const S ratio = d > S(0) ? edge_ / (S(4) * d) : S(1),
-            radius = (S(1) + (std::min)(S(0.25L), ratio * ratio)) * d;
-    return radius * radius;
-  }
-
-  /// n_p of the patch of `near`, over the triangles in `seen`, or where they were too many over a walk. d =
-  /// |x - near|.
+  /// n_p of the patch of `near`; d = |x - near|.
   [[nodiscard]] Vec3<S> patch_direction(const Vec3<S>& x, const Nearest& near, S d,
                                         const Seen& seen) const noexcept {
-    const S limit = banded(d), radius = std::sqrt(limit);
     const std::uint32_t patch = normals_.patch[near.triangle];
-    Vec3<S> sum = Vec3<S>::Zero();
-    S total = S(0);
-    const auto add = [&](const Nearest& here) {
-      if (normals_.patch[here.triangle] != patch) return;
-      const S w = (radius - std::sqrt(here.distance2)) / (radius - d);
-      sum += w * w * normal(here);
-      total += w * w;
-    };
-    if (seen.count <= seen.triangle.size()) {
-      for (std::size_t i = 0; i < seen.count; ++i)
-        if (seen.distance2[i] < limit) add(bvh_.on_triangle(x, seen.triangle[i]));
-    } else {
-      bvh_.overlap(x, radius, add);
-    }
-    return total > S(0) ? Vec3<S>(sum / total) : normal(near);
+    return blend_.mean(
+        bvh_, x, d, seen, [&](std::uint32_t triangle) { return normals_.patch[triangle] == patch; },
+        [&](const Nearest& here) { return normal(here); }, normal(near));
   }
 
   /// g: over all patches nearer than twice the nearest.
@@ -249,7 +216,7 @@ class MeshSurface {
       const S d_p = std::sqrt(foot.distance2), w = S(2) - d_p / d;
       if (!(w > S(0))) continue;
       Seen none;
-      none.count = none.triangle.size() + 1;  // walk
+      none.count = none.triangle.size() + 1;  // incomplete: walk
       sum += w * w * patch_direction(x, foot, d_p, none);
       total += w * w;
     }
@@ -262,58 +229,54 @@ class MeshSurface {
     Feet feet;
     feet.push_back(near);
     const S limit = S(4) * near.distance2;
-    const auto nodes = bvh_.nodes();
     const auto foot_of = [&](std::uint32_t patch) {
       std::size_t i = 0;
       while (i < feet.size() && normals_.patch[feet[i].triangle] != patch) ++i;
       return i;
     };
-    std::array<std::uint32_t, TriangleBvh<S>::stack_size> stack;
-    std::size_t top = 0;
-    stack[top++] = 0;
-    while (top > 0) {
-      const std::uint32_t n = stack[--top];
-      const S away = nodes[n].distance2(x);
-      if (!(away < limit)) continue;
-      if (node_patch_[n] != mixed) {
-        const std::size_t i = foot_of(node_patch_[n]);
-        if (i < feet.size() && !(away < feet[i].distance2)) continue;
-      }
-      for (std::uint32_t k = nodes[n].first; k < nodes[n].first + nodes[n].count; ++k) {
-        const Nearest here = bvh_.on_triangle(x, bvh_.order()[k]);
-        if (!(here.distance2 < limit)) continue;
-        std::size_t i = foot_of(normals_.patch[here.triangle]);
-        if (i == feet.size() && !feet.full()) {
-          feet.push_back(here);
-          continue;
-        }
-        if (i == feet.size()) {  // full: the farthest gives way
-          i = 0;
-          for (std::size_t j = 1; j < feet.size(); ++j)
-            if (feet[j].distance2 > feet[i].distance2) i = j;
-        }
-        if (here.distance2 < feet[i].distance2) feet[i] = here;
-      }
-      if (nodes[n].count > 0) continue;
-      const bool left_first = nodes[nodes[n].first].distance2(x) <= nodes[nodes[n].first + 1].distance2(x);
-      stack[top++] = nodes[n].first + (left_first ? 1 : 0);
-      stack[top++] = nodes[n].first + (left_first ? 0 : 1);
-    }
+    const auto cull = bvh_.cull(x);
+    bvh_.walk(
+        cull, cull.limit(limit),
+        [&](std::uint32_t node, std::size_t child, float away) {
+          const std::uint32_t patch = node_patch_[node][child];
+          if (patch == mixed) return true;
+          const std::size_t i = foot_of(patch);
+          return i == feet.size() || away <= cull.limit(feet[i].distance2);
+        },
+        [&](std::uint32_t triangle) {
+          const Nearest here = bvh_.on_triangle(x, triangle);
+          if (!(here.distance2 < limit)) return;
+          std::size_t i = foot_of(normals_.patch[triangle]);
+          if (i == feet.size() && !feet.full()) {
+            feet.push_back(here);
+            return;
+          }
+          if (i == feet.size()) {  // full: the farthest gives way
+            i = 0;
+            for (std::size_t j = 1; j < feet.size(); ++j)
+              if (feet[j].distance2 > feet[i].distance2) i = j;
+          }
+          if (here.distance2 < feet[i].distance2) feet[i] = here;
+        });
     return feet;
   }
 
-  // Which nodes hold triangles of one patch only; children come after their parent.
+  // Which children of nodes hold triangles of one patch only; children come after their parent.
   void mark_patches() {
     const auto nodes = bvh_.nodes();
     node_patch_.resize(nodes.size());
     for (std::size_t n = nodes.size(); n-- > 0;) {
-      const auto& node = nodes[n];
-      const bool leaf = node.count > 0;
-      std::uint32_t patch = leaf ? normals_.patch[bvh_.order()[node.first]] : node_patch_[node.first];
-      for (std::uint32_t k = 0; k < node.count; ++k)
-        if (normals_.patch[bvh_.order()[node.first + k]] != patch) patch = mixed;
-      if (!leaf && node_patch_[node.first + 1] != patch) patch = mixed;
-      node_patch_[n] = patch;
+      for (std::size_t i = 0; i < nodes[n].count; ++i) {
+        const std::uint32_t child = nodes[n].child[i];
+        if (nodes[n].leaf != 0) {
+          node_patch_[n][i] = normals_.patch[child];
+          continue;
+        }
+        std::uint32_t patch = node_patch_[child][0];
+        for (std::size_t j = 1; j < nodes[child].count; ++j)
+          if (node_patch_[child][j] != patch) patch = mixed;
+        node_patch_[n][i] = patch;
+      }
     }
   }
 
@@ -342,8 +305,10 @@ class MeshSurface {
   std::vector<Vec3<S>> vertex_normals_;  // angle weighted over all faces: decide the sign
   Vec3<S> lower_, upper_, centroid_;
   S volume_, edge_, reach_{};
+  detail::NearBlend<S> blend_;
   detail::DistanceGrid<S> grid_;
-  std::vector<std::uint32_t> node_patch_;  // per node of the tree; mixed: several
+  std::vector<std::array<std::uint32_t, TriangleBvh<S>::Node::width>>
+      node_patch_;  // per child; mixed: several
 };
 
 static_assert(ContactSurface<MeshSurface<float>> && ContactSurface<MeshSurface<double>>);

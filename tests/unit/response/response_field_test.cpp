@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include <palpate/response/response_contact.hpp>
+#include <palpate/response/save.hpp>
 
 #include "support/check.hpp"
+#include "support/no_heap.hpp"
 #include "support/response_meshes.hpp"
 
 namespace {
@@ -42,7 +44,7 @@ TEST_CASE("field: patch moves by d, held vertices rest, reciprocity, forces of t
   const ResponseContact<double> two[2] = {{.place = V(-0.02, 0.037712361663282534, 0), .normal = V(-0.02 / 0.0036, 0.037712361663282534 / 0.0016, 0).normalized(), .radius = 0.005, .displacement = V(0, -0.001, 0)},
                                           {.place = V(0.03, 0.034641016151377546, 0), .normal = n2, .radius = 0.005, .displacement = -0.002 * n2}};
   const std::vector<V> points = {two[0].place, two[1].place, V(0, -0.04, 0), V(0.06, 0, 0)};
-  const ResponseDisplay display = field.bind(points);
+  const ResponseDisplay display = ResponseDisplay(field, points);
   V F[2], again[2];
   std::vector<float> u(4 * points.size(), 7.f), v(4 * points.size());
   tick.solve(two, 2, F);
@@ -56,14 +58,19 @@ TEST_CASE("field: patch moves by d, held vertices rest, reciprocity, forces of t
   CHECK_ABSOLUTE(u[4], -0.002 * n2.x(), 1e-9);
   CHECK((u[8] == 0.f && u[9] == 0.f && u[10] == 0.f));
   // Reciprocity of the columns, before the system is made symmetric: discretisation error of 140 vertices, 6 %.
+  const auto block = [&](std::size_t i, std::size_t j) {
+    Mat3<double> w;
+    for (std::size_t l = 0; l < 3; ++l) w.col(Eigen::Index(l)) = field.at(i, j, l);
+    return w;
+  };
   double difference = 0, norm = 0;
-  for (std::size_t i = 0; i < field.touchable(); ++i)
+  for (std::size_t i = 0; i < field.touch().nodes().size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
-      const auto& a = field.node(i);
-      const auto& b = field.node(j);
+      const auto& a = field.touch().nodes().at(i);
+      const auto& b = field.touch().nodes().at(j);
       if (field.mesh().fixed_vertex[a.vertex] || field.mesh().fixed_vertex[b.vertex]) continue;
-      difference += (field.block(i, j) - field.block(j, i).transpose()).squaredNorm();
-      norm += field.block(i, j).squaredNorm();
+      difference += (block(i, j) - block(j, i).transpose()).squaredNorm();
+      norm += block(i, j).squaredNorm();
     }
   MESSAGE("reciprocity of w: ", std::sqrt(difference / norm));
   CHECK(std::sqrt(difference / norm) < 0.08);
@@ -81,6 +88,12 @@ TEST_CASE("bad input: reported at set-up, zero in a tick") {
   CHECK_THROWS_AS(ResponseField(mesh, base, {.E = -1}), SetupError);
   CHECK_THROWS_AS(ResponseField(mesh, base, {.E = 1, .nu = 0.6}), SetupError);
   CHECK_THROWS_AS(ResponseField(mesh, [](const V&) { return false; }, {.E = 1}), SetupError);
+  CHECK_THROWS_AS(ResponseField(mesh, [](const V&) { return true; }, {.E = 1}), SetupError);
+  MeshData<double> two = mesh;  // a second box, held by nothing
+  for (const V& p : mesh.vertices) two.vertices.push_back(p + V(0, 3, 0));
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const auto& t : mesh.triangles) two.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  CHECK_THROWS_AS(ResponseField(two, base, {.E = 1}), SetupError);
   CHECK_THROWS_AS(ResponseField(mesh, std::vector<std::uint32_t>{999}, {.E = 1}), SetupError);
   const ResponseField field(mesh, base, {.E = 1, .mesh = {.vertices = 40}, .threads = 1});
   ResponseTick<1> tick(field);
@@ -91,7 +104,84 @@ TEST_CASE("bad input: reported at set-up, zero in a tick") {
     tick.solve(&contact, 1, &F);
     CHECK(F == V::Zero());
     float u[3] = {1, 1, 1};
-    tick.displace(field.bind(std::vector<V>{V(0.5, 1, 0.5)}), u, 3);
+    tick.displace(ResponseDisplay(field, std::vector<V>{V(0.5, 1, 0.5)}), u, 3);
     CHECK((u[0] == 0.f && u[1] == 0.f && u[2] == 0.f));
   }
+}
+
+TEST_CASE("tick: no heap, no memory of what was before, coinciding contacts, surplus") {
+  const ResponseField field = ellipsoid(0.3, 60);
+  const V n = V::UnitY();
+  const ResponseContact<double> one{.place = V(0, 0.04, 0), .normal = n, .radius = 0.004, .displacement = V(0.0005, -0.002, 0)};
+  const ResponseContact<double> far{.place = V(0.06, 0, 0), .normal = V::UnitX(), .radius = 0.02, .displacement = V(-0.002, 0, 0)};
+  const std::vector<V> points = {V(0.01, 0.039, 0.001), V(-0.05, 0.01, 0.01)};
+  const ResponseDisplay display(field, points);
+  ResponseTick<3> tick(field), fresh(field);
+  V F[4], again[3];
+  double u[6], v[6];
+  fresh.solve(&one, 1, F);
+  fresh.displace(display, u, 3);
+  const test::HeapCount heap;
+  const ResponseContact<double> both[2] = {far, one};
+  tick.solve(both, 2, again);
+  tick.displace(display, v, 3);
+  tick.solve(&one, 1, again);
+  tick.displace(display, v, 3);
+  CHECK(heap.allocations() == 0);
+  CHECK(again[0] == F[0]);
+  for (int i = 0; i < 6; ++i) CHECK(v[i] == u[i]);
+  // The same patch two and three times: the system stays definite, and together they push about as hard as one.
+  const ResponseContact<double> same[4] = {one, one, one, one};
+  for (std::size_t count : {2, 3}) {
+    CHECK(fresh.solve(same, count, again) == Status::contact);
+    V sum = V::Zero();
+    for (std::size_t c = 0; c < count; ++c) sum += again[c];
+    CHECK(is_finite(sum));
+    // Discs that know of each other by second moments only: 2 / (1 + 0.71), 3 / (1 + 2 * 0.71) of one; second order counts
+    // for each of them.
+    CHECK(sum.norm() > 0.8 * F[0].norm());
+    CHECK(sum.norm() < 1.5 * F[0].norm());
+  }
+  CHECK(has(fresh.solve(same, 4, F), Status::region_overflow));
+  CHECK(F[3] == V::Zero());
+}
+
+TEST_CASE("saved and loaded: the same bits; bytes that are not a saved field are refused by name") {
+  const ResponseField field = cube(1e6, 0.4, 40);
+  const std::vector<std::byte> bytes = save_response_field(field);
+  const ResponseField loaded = load_response_field(bytes);
+  CHECK(save_response_field(loaded) == bytes);
+  const ResponseContact<double> one{.place = V(0.01, 0.1, 0.02), .normal = V::UnitY(), .radius = 0.01, .displacement = V(0.0005, -0.002, 0)};
+  V F, again;
+  ResponseTick<1>(field).solve(&one, 1, &F);
+  ResponseTick<1>(loaded).solve(&one, 1, &again);
+  CHECK(F == again);
+  const auto refused = [](std::vector<std::byte> changed, const char* why) {
+    try {
+      (void)load_response_field(changed);
+    } catch (const SetupError& e) {
+      return std::string_view(e.what()).find(why) != std::string_view::npos;
+    }
+    return false;
+  };
+  CHECK(refused({}, "at least 32"));
+  CHECK(refused(std::vector<std::byte>(100), "not a saved response field"));
+  CHECK(refused({bytes.begin(), bytes.end() - 1}, "cut short"));
+  auto changed = bytes;
+  changed.push_back(std::byte{0});
+  CHECK(refused(changed, "too long"));
+  changed = bytes;
+  changed[8] = std::byte{99};
+  CHECK(refused(changed, "version"));
+  for (std::size_t at : {std::size_t{40}, bytes.size() / 2, bytes.size() - 1}) {  // one bit anywhere
+    changed = bytes;
+    changed[at] ^= std::byte{4};
+    CHECK(refused(changed, "checksum"));
+  }
+  // A list's length changed with the checksum made right: still refused, nothing is read past the end.
+  changed = bytes;
+  changed[32 + 24 + 6] = std::byte{1};
+  const std::uint64_t sum = detail::checksum(std::span<const std::byte>(changed).subspan(32));
+  std::memcpy(changed.data() + 24, &sum, 8);
+  CHECK(refused(changed, "lengths"));
 }

@@ -30,20 +30,28 @@ void check_boxes(const TriangleBvh<S>& tree) {
   const auto nodes = tree.nodes();
   std::size_t wrong = 0;
   for (const auto& node : nodes) {
-    Vec3<S> low = Vec3<S>::Constant((std::numeric_limits<S>::max)()), high = -low;
-    for (std::uint32_t i = node.first; i < node.first + node.count; ++i) {
-      for (const std::uint32_t v : tree.triangles()[tree.order()[i]]) {
-        low = low.cwiseMin(tree.vertices()[v]);
-        high = high.cwiseMax(tree.vertices()[v]);
+    for (std::size_t i = 0; i < node.count; ++i) {
+      for (int k = 0; k < 3; ++k) {
+        const auto axis = static_cast<std::size_t>(k);
+        if (node.leaf == 0) {
+          const auto& child = nodes[node.child[i]];
+          float from = child.low[axis][0], to = child.high[axis][0];
+          for (std::size_t j = 1; j < child.count; ++j) {
+            from = (std::min)(from, child.low[axis][j]);
+            to = (std::max)(to, child.high[axis][j]);
+          }
+          wrong += node.low[axis][i] != from || node.high[axis][i] != to;
+          continue;
+        }
+        S from = (std::numeric_limits<S>::max)(), to = -from;
+        for (const std::uint32_t v : tree.triangles()[node.child[i]]) {
+          from = (std::min)(from, tree.vertices()[v][k] - tree.origin()[k]);
+          to = (std::max)(to, tree.vertices()[v][k] - tree.origin()[k]);
+        }
+        wrong +=
+            node.low[axis][i] != static_cast<float>(from) || node.high[axis][i] != static_cast<float>(to);
       }
     }
-    if (node.count == 0) {
-      for (std::uint32_t k = 0; k < 2; ++k) {
-        low = low.cwiseMin(nodes[node.first + k].low);
-        high = high.cwiseMax(nodes[node.first + k].high);
-      }
-    }
-    wrong += node.low != low || node.high != high;
   }
   CHECK(wrong == 0);
 }
@@ -196,9 +204,9 @@ TEST_CASE("bvh: many triangles at one place do not deepen the tree") {
   const TriangleBvh<double> tree(mesh);
   std::vector<int> depth(tree.nodes().size(), 0);
   for (std::size_t n = 0; n < depth.size(); ++n) {
-    CHECK(tree.nodes()[n].count <= tree.leaf_size);
-    if (tree.nodes()[n].count > 0) continue;
-    for (std::size_t k = 0; k < 2; ++k) depth[tree.nodes()[n].first + k] = depth[n] + 1;
+    const auto& node = tree.nodes()[n];
+    CHECK(node.count <= node.width);
+    for (std::size_t i = 0; i < node.count && node.leaf == 0; ++i) depth[node.child[i]] = depth[n] + 1;
   }
   CHECK(*std::max_element(depth.begin(), depth.end()) <= 62);
   CHECK(tree.closest(Vec3<double>(0.1, 0.1, 3)).distance2 == 9);

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+
+/// @file  How time and memory grow with the object's mesh. The same mesh is what the tool touches (a MeshSurface, double)
+/// and what is drawn (positions and normals, float), so that both grow, and both want the same caches.
+///
+/// Every tick moves the tool, asks, and writes the whole shape, as one servo thread would:
+///
+///     detect_us, force_us, normals_us   tool to the next place; even ticks: penetration() of every tool point (timed as
+///                                       detection), odd ticks: the whole force tick (timed as force); then the
+///                                       shape with normals (timed as normals)
+///     shape_us                          force tick, then the shape without normals (timed)
+///     copy_us                           force tick, then memcpy of as many bytes as the positions have (timed)
+///
+/// So detection and force find the caches as the shape left them. Medians of the thread's processor time, less what reading it
+/// costs: a large mesh takes longer than a time slice, and other programs' share would count. memory_MB: heap of mesh
+/// surface, shape model and its buffers. hash: of the forces, the positions and the normals.
+
+#include "shape_scene.hpp"
+
+#include <malloc.h>
+
+namespace {
+
+using namespace bench;
+
+double heap_MB() {
+  const auto info = mallinfo2();
+  return 1e-6 * static_cast<double>(info.uordblks + info.hblkhd);
+}
+
+std::int64_t processor_time() {  // of this thread [ns]
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1000000000 * static_cast<std::int64_t>(t.tv_sec) + t.tv_nsec;
+}
+
+struct Median {
+  std::vector<std::int64_t> times;
+  template <class Work>
+  void add(const Work& work) {
+    const std::int64_t begin = processor_time();
+    work();
+    times.push_back(processor_time() - begin);
+  }
+  /// [us], of all but the first tenth, which warms up.
+  double value(std::int64_t clock) {
+    const auto from = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 10);
+    const auto middle = from + (times.end() - from) / 2;
+    std::nth_element(from, middle, times.end());
+    return 1e-3 * static_cast<double>((std::max)(*middle - clock, std::int64_t{0}));
+  }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const Output out(
+      argc, argv,
+      "vertices,triangles,tool_points,detect_us,force_us,shape_us,normals_us,memory_MB,copy_us,hash");
+  const auto poses = sliding<double>(0.04, 2e-3);
+  Median empty;
+  for (int k = 0; k < 10000; ++k) empty.add([] {});
+  const auto clock = static_cast<std::int64_t>(1e3 * empty.value(0));
+  for (const std::size_t wanted : {1000ul, 3000ul, 10000ul, 20000ul, 100000ul, 300000ul, 1000000ul}) {
+    if (out.quick && wanted > 100000) break;
+    const std::size_t ticks =
+        (std::clamp)(10000000 / wanted, std::size_t{100}, std::size_t{out.quick ? 400u : 2000u});
+    const double before = heap_MB();
+    const MeshData<float> mesh = ellipsoid<float>().mesh(wanted);
+    const MeshSurface<double> surface(TriangleMesh<double>(ellipsoid<double>().mesh(wanted)));
+    Shape shape(mesh, true);
+    const double memory = heap_MB() - before;
+    Shape bare(mesh, false);
+    std::vector<float> copy(bare.positions().size());
+    for (const int points : {1, 100, 1000}) {
+      auto touch = make_touch(surface, points);
+      const auto& body = touch.object();
+      Hash hash;
+      const auto tick = [&](std::size_t k) {
+        hash.add(touch.tick(poses[k % poses.size()]).wrench.force.y());
+      };
+      Median detect, force, normals, positions, copied;
+      for (std::size_t k = 0; k < ticks; ++k) {
+        const Pose<double>& X = poses[k % poses.size()];
+        if (k % 2 == 0) {
+          double depth = 0;
+          detect.add([&] {
+            for (const auto& point : touch.tool().points()) depth += body.penetration(X * point).depth;
+          });
+          hash.add(depth);
+          tick(k);
+        } else {
+          force.add([&] { tick(k); });
+        }
+        normals.add([&] { shape.write(touch.contacts()); });
+      }
+      for (std::size_t k = 0; k < ticks; ++k) {
+        tick(k);
+        positions.add([&] { bare.write(touch.contacts()); });
+      }
+      for (std::size_t k = 0; k < ticks; ++k) {
+        tick(k);
+        copied.add([&] {
+          std::memcpy(copy.data(), bare.positions().data(), copy.size() * sizeof(float));
+          use(*copy.data());
+        });
+      }
+      hash.add(shape.positions());
+      hash.add(shape.normals());
+      hash.add(bare.positions());
+      char row[256];
+      std::snprintf(row, sizeof row, "%zu,%zu,%d,%.3f,%.3f,%.2f,%.2f,%.2f,%.3f,%016llx", mesh.vertices.size(),
+                    mesh.triangles.size(), points, detect.value(clock), force.value(clock),
+                    positions.value(clock), normals.value(clock), memory, copied.value(clock),
+                    static_cast<unsigned long long>(hash.value()));
+      double square = 0;
+      for (const float x : bare.positions()) square += double(x) * double(x);
+      out.row(row, "mean_square_coordinate_m2", square / static_cast<double>(copy.size()));
+    }
+  }
+}

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Parameters of a law with few of them from a measured or computed curve: bounded least squares. Set-up only.
+///
+/// Minimises sum w_i (f(p, x_i) - y_i)^2 over low <= p <= high by Levenberg and Marquardt's steps on the parameters that are
+/// not held at a bound. Derivatives by central differences. Source: [more1978].
+
+#include <palpate/core/error.hpp>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace palpate {
+
+/// A point of a curve: depth D [m], force F [N], how much it counts [-].
+struct CurvePoint {
+  double depth = 0, force = 0, weight = 1;
+};
+
+/// A fitted curve. Confidence: the true value lies within value +- half_width with 95 % probability if the law is right
+/// and the errors are independent and normal; for curves that were computed it says how well the law fits instead.
+template <std::size_t N>
+struct CurveFit {
+  std::array<double, N> value{};       ///< parameters
+  std::array<double, N> half_width{};  ///< of their 95 % confidence intervals; 0 for those at a bound
+  std::array<bool, N> at_bound{};
+  std::vector<double> residual;  ///< fitted less given, per point [N]
+  double rms = 0;                ///< root mean square residual, weighted [N]
+  double relative_rms = 0;       ///< over the forces' own
+};
+
+struct CurveFitParams {
+  double worst_rms = 0.2;  ///< relative: a fit worse than this is refused
+  int most_steps = 200;
+};
+
+/// Fits law(p, depth) -> force. Reports: fewer than N + 2 points, numbers that are not finite, weights < 0, bounds the wrong
+/// way round, no force anywhere, parameters that the points do not determine, a fit that does not settle or is worse
+/// than `worst_rms`.
+template <std::size_t N, class Law>
+[[nodiscard]] CurveFit<N> fit_curve(std::span<const CurvePoint> points, const Law& law,
+                                    const std::array<double, N>& start, const std::array<double, N>& low,
+                                    const std::array<double, N>& high, const CurveFitParams& params = {}) {
+  using Vector = Eigen::Matrix<double, int(N), 1>;
+  using Matrix = Eigen::Matrix<double, int(N), int(N)>;
+  const char* where = "fit_curve";
+  const std::size_t m = points.size();
+  if (m < N + 2) fail(where, "points must be at least the parameters and two", double(m));
+  double weights = 0, forces = 0;
+  for (std::size_t i = 0; i < m; ++i) {
+    const CurvePoint& q = points[i];
+    if (!is_finite(q.depth) || !is_finite(q.force) || !is_finite(q.weight))
+      fail_at(where, "numbers must be finite", "point", i);
+    if (q.weight < 0) fail_at(where, "weights must be >= 0", "point", i, q.weight);
+    weights += q.weight;
+    forces += q.weight * q.force * q.force;
+  }
+  if (!(weights > 0) || !(forces > 0)) fail(where, "some point must have a weight and a force");
+  Vector p, scale;
+  for (std::size_t k = 0; k < N; ++k) {
+    const auto i = Eigen::Index(k);
+    if (!is_finite(start[k]) || !(low[k] < high[k]))
+      fail_at(where, "start must be finite and low < high", "parameter", k);
+    p[i] = std::clamp(start[k], low[k], high[k]);
+    scale[i] = p[i] != 0 ? std::abs(p[i]) : (is_finite(high[k] - low[k]) ? high[k] - low[k] : 1);
+  }
+  const auto evaluate = [&](const Vector& at, std::size_t i) {
+    std::array<double, N> value;
+    for (std::size_t k = 0; k < N; ++k) value[k] = at[Eigen::Index(k)];
+    return law(value, points[i].depth);
+  };
+  const auto cost = [&](const Vector& at) {
+    double sum = 0;
+    for (std::size_t i = 0; i < m; ++i) {
+      const double r = evaluate(at, i) - points[i].force;
+      sum += points[i].weight * r * r;
+    }
+    return is_finite(sum) ? sum : (std::numeric_limits<double>::max)();
+  };
+  // In units of `scale`: normal matrix, gradient.
+  Matrix A;
+  Vector g;
+  const auto linearise = [&] {
+    A.setZero();
+    g.setZero();
+    for (std::size_t i = 0; i < m; ++i) {
+      Vector row;
+      for (Eigen::Index k = 0; k < Eigen::Index(N); ++k) {
+        const double step = 1e-6 * scale[k];
+        Vector up = p, down = p;
+        up[k] += step;
+        down[k] -= step;
+        row[k] = (evaluate(up, i) - evaluate(down, i)) / 2e-6;
+      }
+      A += points[i].weight * row * row.transpose();
+      g += points[i].weight * (evaluate(p, i) - points[i].force) * row;
+    }
+  };
+  const auto held = [&](Eigen::Index k) {
+    return (p[k] <= low[std::size_t(k)] && g[k] > 0) || (p[k] >= high[std::size_t(k)] && g[k] < 0);
+  };
+  const auto without_held = [&](double damping) {
+    Matrix B = A;
+    for (Eigen::Index k = 0; k < Eigen::Index(N); ++k) {
+      B(k, k) += damping * (A(k, k) + 1e-300);
+      if (!held(k)) continue;
+      B.row(k).setZero();
+      B.col(k).setZero();
+      B(k, k) = 1;
+    }
+    return B;
+  };
+  double damping = 1e-3, now = cost(p);
+  bool settled = false;
+  for (int step = 0; step < params.most_steps && !settled; ++step) {
+    linearise();
+    bool better = false;
+    for (int tries = 0; tries < 30 && !better; ++tries) {
+      Vector rhs = -g;
+      for (Eigen::Index k = 0; k < Eigen::Index(N); ++k)
+        if (held(k)) rhs[k] = 0;
+      const Vector move = without_held(damping).ldlt().solve(rhs);
+      Vector next = p + scale.cwiseProduct(move);
+      for (Eigen::Index k = 0; k < Eigen::Index(N); ++k)
+        next[k] = std::clamp(next[k], low[std::size_t(k)], high[std::size_t(k)]);
+      const double then = cost(next);
+      if (then <= now && is_finite(then)) {
+        settled = now - then <= 1e-14 * forces;
+        better = true;
+        p = next;
+        now = then;
+        damping = (std::max)(0.1 * damping, 1e-12);
+      } else {
+        damping *= 10;
+      }
+    }
+    settled = settled || !better;  // no step downhill is left
+  }
+  if (!settled) fail(where, "the fit does not settle within the steps allowed", params.most_steps);
+  linearise();
+  CurveFit<N> fit;
+  std::size_t open = 0;
+  for (std::size_t k = 0; k < N; ++k) {
+    const auto i = Eigen::Index(k);
+    fit.value[k] = p[i];
+    fit.at_bound[k] = p[i] <= low[k] || p[i] >= high[k];
+    open += fit.at_bound[k] ? 0 : 1;
+  }
+  fit.rms = std::sqrt(now / weights);
+  fit.relative_rms = std::sqrt(now / forces);
+  for (std::size_t i = 0; i < m; ++i) fit.residual.push_back(evaluate(p, i) - points[i].force);
+  if (fit.relative_rms > params.worst_rms)
+    fail(where, "the law does not fit: relative rms residual", fit.relative_rms);
+  // Covariance of the free parameters; correlation matrix first, so that units do not count.
+  Matrix B = A;
+  for (std::size_t k = 0; k < N; ++k) {
+    const auto i = Eigen::Index(k);
+    if (!fit.at_bound[k] && !(A(i, i) > 0)) fail_at(where, "the points do not determine it", "parameter", k);
+    if (!fit.at_bound[k]) continue;
+    B.row(i).setZero();
+    B.col(i).setZero();
+    B(i, i) = 1;
+  }
+  const Vector unit = B.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LDLT<Matrix> correlation(unit.asDiagonal() * B * unit.asDiagonal());
+  // Central differences carry about ten digits, a normal matrix half of them.
+  if (correlation.vectorD().minCoeff() < 1e-9)
+    fail(where,
+         "the points do not determine all parameters: the law has too many, or the depths are too alike");
+  const Matrix inverse = unit.asDiagonal() * correlation.solve(Matrix::Identity()) * unit.asDiagonal();
+  const double freedom = double(m - open), variance = now / freedom, z = 1.959963985;
+  // Student's t by Cornish and Fisher's expansion; 2 % low at two degrees of freedom.
+  const double t = z + (z * z * z + z) / (4 * freedom) +
+                   (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * freedom * freedom);
+  for (std::size_t k = 0; k < N; ++k)
+    if (!fit.at_bound[k])
+      fit.half_width[k] =
+          t * std::sqrt(variance * inverse(Eigen::Index(k), Eigen::Index(k))) * scale[Eigen::Index(k)];
+  return fit;
+}
+
+}  // namespace palpate

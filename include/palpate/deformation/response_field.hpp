@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Deformation model from a response field: what boundary elements say the whole surface does.
+
+#include <palpate/deformation/concept.hpp>
+#include <palpate/deformation/vertex_normals.hpp>
+#include <palpate/response/response_contact.hpp>
+
+#include <array>
+#include <memory>
+#include <utility>
+
+namespace palpate {
+
+/// Contacts to vertices: each contact is a stuck patch with the area of its region that moves by D (response_contact.hpp);
+/// the contacts' fields are coupled. Accuracy: docs/accuracy.md.
+///
+/// | symbol | name                  | unit | range                                                                 |
+/// |--------|-----------------------|------|-----------------------------------------------------------------------|
+/// | a      | radius of the patch   | m    | sqrt(area / pi), at least `least_radius` and |D| / 2                  |
+/// |        | `Params::least_radius` | m   | > 0, or 0 for a quarter of the solve mesh's edge length               |
+///
+/// |D| / 2 is where second order in depth ends, and keeps a point contact from drawing a needle. `Contacts`: most drawn at
+/// once; more are left out, region_overflow. A contact that is not finite is left out, invalid_pose. With the same
+/// contacts as in the last write nothing is read or written. All vertices move: `Moved` counts them all.
+///
+/// Set-up reports a least radius < 0, and a mesh that is not finite or, with normals, not closed.
+template <Real S, std::size_t Contacts = 4>
+class ResponseFieldDeformation {
+ public:
+  using Scalar = S;
+  static constexpr bool active = true;
+  static constexpr std::size_t most_contacts = Contacts;
+
+  struct Params {
+    S least_radius = S(0);
+    bool normals = true;
+    typename ResponseTick<Contacts>::Settings tick = {};
+  };
+
+  /// `mesh`: what is drawn, bound to the field once; any mesh of the same body.
+  template <Real M>
+  ResponseFieldDeformation(std::shared_ptr<const ResponseField> field, const MeshData<M>& mesh,
+                           const Params& params = {})
+      : p_(params), field_(std::move(field)), display_(*field_, mesh.vertices), tick_(*field_, params.tick) {
+    require_non_negative(p_.least_radius, name, "least_radius [m] must be >= 0 and finite");
+    if (p_.least_radius == S(0)) p_.least_radius = static_cast<S>(0.25 * field_->mesh().length);
+    const std::size_t n = mesh.vertices.size();
+    if (p_.normals) {
+      normals_ = VertexNormals<float>(mesh.triangles, n);
+      for (auto& list : rest_normal_) list.resize(n);
+    }
+    for (auto& list : position_) list.resize(n + VertexNormals<float>::padding, 0.f);
+    rest();
+    if (!p_.normals) return;
+    each_normal([this](std::size_t v, float x, float y, float z) {
+      rest_normal_[0][v] = x;
+      rest_normal_[1][v] = y;
+      rest_normal_[2][v] = z;
+    });
+  }
+
+  template <Real T>
+  void write_rest(const VertexBuffer<T>& out) noexcept {
+    rest();
+    const auto number = [](std::size_t i) { return i; };
+    const std::size_t n = display_.size();
+    detail::store3(out.positions, out.position_stride, n, number, position_[0].data(), position_[1].data(),
+                   position_[2].data());
+    if (p_.normals && out.normals != nullptr)
+      detail::store3(out.normals, out.normal_stride, n, number, rest_normal_[0].data(),
+                     rest_normal_[1].data(), rest_normal_[2].data());
+  }
+
+  /// Writes the shape under `contacts`, unless it is the one already there.
+  template <Real T>
+  Moved<S> write(std::span<const ContactState<S>> contacts, const VertexBuffer<T>& out) noexcept {
+    Moved<S> moved;
+    std::array<ResponseContact<S>, Contacts> pressed;
+    std::size_t count = 0;
+    for (const ContactState<S>& c : contacts) {
+      const ResponseContact<S> patch = patch_of(c);
+      if (!is_usable(patch)) {
+        moved.status |= Status::invalid_pose;
+      } else if (count == Contacts) {
+        moved.status |= Status::region_overflow;
+      } else {
+        pressed[count++] = patch;
+      }
+    }
+    if (out.positions == nullptr || !is_new(pressed, count)) return moved;
+    tick_.solve(pressed.data(), count, forces_.data());
+    using detail::Lane;
+    constexpr float far = (std::numeric_limits<float>::max)();
+    detail::Lane3 low{Lane::Constant(far), Lane::Constant(far), Lane::Constant(far)},
+        high{-low.x, -low.y, -low.z};
+    tick_.each(
+        display_, [&, to = reinterpret_cast<unsigned char*>(out.positions), stride = out.position_stride,
+                   x = position_[0].data(), y = position_[1].data(), z = position_[2].data(),
+                   keep = p_.normals](std::size_t slot, const detail::Lane3& u) {
+          const detail::Lane3 at{Lane::Map(display_.x() + slot) + u.x, Lane::Map(display_.y() + slot) + u.y,
+                                 Lane::Map(display_.z() + slot) + u.z};
+          low = {low.x.min(at.x), low.y.min(at.y), low.z.min(at.z)};
+          high = {high.x.max(at.x), high.y.max(at.y), high.z.max(at.z)};
+          ResponseTick<Contacts>::put_lanes(display_.vertex() + slot, at,
+                                            [=](std::size_t v, float px, float py, float pz) {
+                                              put(to + stride * v, T(px), T(py), T(pz));
+                                              if (keep) x[v] = px, y[v] = py, z[v] = pz;
+                                            });
+        });
+    moved.vertices = display_.size();
+    if (moved.vertices > 0) {
+      moved.lower = Vec3<float>(low.x.minCoeff(), low.y.minCoeff(), low.z.minCoeff()).template cast<S>();
+      moved.upper = Vec3<float>(high.x.maxCoeff(), high.y.maxCoeff(), high.z.maxCoeff()).template cast<S>();
+    }
+    if (p_.normals && out.normals != nullptr) {
+      unsigned char* const base = reinterpret_cast<unsigned char*>(out.normals);
+      each_normal([base, stride = out.normal_stride](std::size_t v, float nx, float ny, float nz) {
+        put(base + stride * v, T(nx), T(ny), T(nz));
+      });
+    }
+    return moved;
+  }
+
+  /// What the field says the tool exerts on the object in the contacts of the last write [N].
+  [[nodiscard]] std::span<const Vec3<S>> forces() const noexcept { return {forces_.data(), last_count_}; }
+  [[nodiscard]] const ResponseField& field() const noexcept { return *field_; }
+  [[nodiscard]] const Params& params() const noexcept { return p_; }
+
+ private:
+  static constexpr const char* name = "ResponseFieldDeformation";
+  static constexpr std::size_t lanes = VertexNormals<float>::lanes;
+
+  template <Real T>
+  static PALPATE_INLINE void put(unsigned char* at, T x, T y, T z) noexcept {
+    std::memcpy(at, &x, sizeof(T));  // one by one, see store3
+    std::memcpy(at + sizeof(T), &y, sizeof(T));
+    std::memcpy(at + 2 * sizeof(T), &z, sizeof(T));
+  }
+
+  [[nodiscard]] ResponseContact<S> patch_of(const ContactState<S>& c) const noexcept {
+    const S area = c.area > S(0) ? c.area : S(0);
+    const S a =
+        (std::max)({p_.least_radius, std::sqrt(area / std::numbers::pi_v<S>), c.displacement.norm() / S(2)});
+    return {c.origin(), c.normal, a, c.displacement};
+  }
+  // Keeps the contacts; false when they are those of the last write, bit for bit.
+  [[nodiscard]] bool is_new(const std::array<ResponseContact<S>, Contacts>& pressed,
+                            std::size_t count) noexcept {
+    bool same = count == last_count_;
+    for (std::size_t c = 0; same && c < count; ++c)
+      same = pressed[c].place == last_[c].place && pressed[c].normal == last_[c].normal &&
+             pressed[c].radius == last_[c].radius && pressed[c].displacement == last_[c].displacement;
+    last_ = pressed;
+    last_count_ = count;
+    return !same;
+  }
+
+  void rest() noexcept {
+    last_count_ = 0;
+    for (std::size_t slot = 0; slot < display_.slots(); ++slot) {
+      const std::uint32_t v = display_.vertex()[slot];
+      position_[0][v] = display_.x()[slot];
+      position_[1][v] = display_.y()[slot];
+      position_[2][v] = display_.z()[slot];
+    }
+  }
+
+  // emit(vertex, x, y, z) with the unit normal of every vertex; a collapsed one keeps its undeformed normal.
+  template <class Emit>
+  void each_normal(const Emit& emit) const noexcept {
+    using Lanes = Eigen::Array<float, static_cast<int>(lanes), 1>;
+    alignas(32) float x[lanes], y[lanes], z[lanes];
+    for (const auto& run : normals_.runs()) {
+      normals_.area(run, 0, position_[0].data(), position_[1].data(), position_[2].data(), x, y, z);
+      const Lanes nx = Lanes::Map(x), ny = Lanes::Map(y), nz = Lanes::Map(z),
+                  square = nx * nx + ny * ny + nz * nz;
+      const Lanes scale = square.max((std::numeric_limits<float>::min)()).rsqrt();
+      Lanes::Map(x) = nx * scale;
+      Lanes::Map(y) = ny * scale;
+      Lanes::Map(z) = nz * scale;
+      if (square.minCoeff() > (std::numeric_limits<float>::min)()) {
+        for (std::uint32_t i = 0; i < run.count; ++i) emit(run.first + i, x[i], y[i], z[i]);
+        continue;
+      }
+      for (std::uint32_t i = 0; i < run.count; ++i) {
+        const std::size_t v = run.first + i;
+        if (square[i] > (std::numeric_limits<float>::min)())
+          emit(v, x[i], y[i], z[i]);
+        else
+          emit(v, rest_normal_[0][v], rest_normal_[1][v], rest_normal_[2][v]);
+      }
+    }
+  }
+
+  Params p_;
+  std::shared_ptr<const ResponseField> field_;
+  ResponseDisplay display_;
+  ResponseTick<Contacts> tick_;
+  VertexNormals<float> normals_;
+  std::array<std::vector<float>, 3> position_;  // by vertex, now
+  std::array<std::vector<float>, 3> rest_normal_;
+  std::array<ResponseContact<S>, Contacts> last_{};
+  std::size_t last_count_ = 0;
+  std::array<Vec3<S>, Contacts> forces_{};
+};
+
+}  // namespace palpate

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Contact with the shape as it is now: what has bulged out is touched where it is seen.
+
+#include <palpate/surface/near_blend.hpp>
+#include <palpate/surface/triangle_mesh.hpp>
+
+#include <span>
+#include <utility>
+
+namespace palpate {
+
+/// An elastic object whose mesh follows the deformation of the last tick; hand it to ContactSolver in place of the
+/// undeformed body, and call update() after the shape has been written. Section III of [luo2005], third phase.
+///
+///     depth(x) = depth_0(x - b(y)),        b = max(0, u . n) n
+///
+/// y is the point of the deformed mesh closest to x, u its displacement since set-up and n the undeformed normal; b is
+/// interpolated from the vertices and blended over the triangles next to y (surface/near_blend.hpp), because y itself
+/// jumps below a convex edge; depth_0 is the undeformed body's. Where the surface has moved inwards, as under a
+/// tool, b = 0 and depth is measured from the undeformed surface, as D is everywhere (section IV). Where it has bulged
+/// out, the undeformed shape has no contact at x; the deformed mesh finds it, and the depth below the bulge is measured
+/// on the undeformed shape with the bulge taken off. Continuous in x as far as the closest point is, and in u.
+///
+/// The paper's detection uses the deformed shape as well but does not say from where depth is then measured: this is our
+/// reading. The bulge is one tick old, so a stiff bulge raised by the contact itself can lag behind by a tick.
+///
+/// Without a bulge it costs nothing but the test; with one, a closest point on the mesh for each candidate. `mesh` is
+/// the undeformed surface in the object's frame, closed and oriented (checked by TriangleMesh); it need not be the body's
+/// own, so an exact body keeps its exact depth.
+template <ContactSurface B>
+class DeformedSurface {
+ public:
+  using Scalar = typename B::Scalar;
+  using S = Scalar;
+
+  DeformedSurface(B body, const TriangleMesh<S>& mesh)
+      : body_(std::move(body)),
+        tree_(mesh.data()),
+        rest_(mesh.vertices()),
+        normal_(mesh.vertex_normals()),
+        height_(rest_.size(), S(0)),
+        blend_(detail::mean_edge(mesh.area(), mesh.triangles().size())) {}
+
+  /// Every vertex's place [m], in the mesh's order; linear. One that is not finite stays where it was.
+  void update(std::span<const Vec3<S>> vertices) noexcept {
+    tree_.move_all(vertices);
+    highest_ = S(0);
+    for (std::size_t v = 0; v < rest_.size(); ++v) raise(v);
+  }
+
+  /// The places [m] of some vertices; the others stay. Refits only the boxes above them.
+  void update(std::span<const std::uint32_t> which, std::span<const Vec3<S>> places) noexcept {
+    tree_.move(which, places);
+    for (const std::uint32_t v : which) raise(v);
+    highest_ = S(0);
+    for (const S h : height_) highest_ = (std::max)(highest_, h);
+  }
+
+  [[nodiscard]] SurfacePoint<S> closest(const Vec3<S>& x) const noexcept { return body_.closest(x); }
+
+  [[nodiscard]] Penetration<S> penetration(const Vec3<S>& x) const noexcept {
+    if (!(highest_ > S(0)) || body_.separated(x, highest_)) return body_.penetration(x);
+    detail::Seen<S> seen;
+    const auto near = blend_.search(tree_, x, 0, seen);
+    return body_.penetration(x - blend_.mean(
+                                     tree_, x, std::sqrt(near.distance2), seen,
+                                     [](std::uint32_t) { return true; },
+                                     [this](const auto& at) { return bulge(at); }, bulge(near)));
+  }
+
+  /// True only if no point of the ball is inside the undeformed body or below a bulge.
+  [[nodiscard]] bool separated(const Vec3<S>& c, S r) const noexcept {
+    return body_.separated(c, r + highest_);
+  }
+
+  [[nodiscard]] S reach() const noexcept { return body_.reach(); }
+
+  [[nodiscard]] const B& body() const noexcept { return body_; }
+  /// The deformed mesh of the last update.
+  [[nodiscard]] const TriangleBvh<S>& tree() const noexcept { return tree_; }
+  /// max u . n over the vertices, or 0 [m].
+  [[nodiscard]] S highest_bulge() const noexcept { return highest_; }
+
+ private:
+  void raise(std::size_t v) noexcept {
+    height_[v] = (std::max)(S(0), (tree_.vertices()[v] - rest_[v]).dot(normal_[v]));
+    highest_ = (std::max)(highest_, height_[v]);
+  }
+
+  [[nodiscard]] Vec3<S> bulge(const typename TriangleBvh<S>::Nearest& at) const noexcept {
+    Vec3<S> b = Vec3<S>::Zero();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = tree_.triangles()[at.triangle][k];
+      b += at.weight[static_cast<int>(k)] * height_[v] * normal_[v];
+    }
+    return b;
+  }
+
+  B body_;
+  TriangleBvh<S> tree_;
+  std::vector<Vec3<S>> rest_, normal_;
+  std::vector<S> height_;  // max(0, u . n) of each vertex
+  S highest_ = S(0);
+  detail::NearBlend<S> blend_;
+};
+
+}  // namespace palpate

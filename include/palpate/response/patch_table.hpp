@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  How far the body's correction w lets a contact give way: means over patches of any size, tabulated.
+
+#include <palpate/response/near_field.hpp>
+#include <palpate/response/parallel.hpp>
+#include <palpate/response/touch_mesh.hpp>
+
+#include <Eigen/Eigenvalues>
+
+namespace palpate {
+
+/// mu w averaged over a patch whose load is spread over it in the same way, mu = 1:
+///
+///     w(x, s) = sum_ik l_i l_k W_ik(s),   second(x, s) = sum_k l_k Q_k(s)
+///
+/// with the place x of weights l_i in a triangle of nodes, W_ik the mean over a patch at node i of the field of forces
+/// spread over a patch at node k, and Q_k the mean of the loads of second order at k itself. Linear in s^2 between the
+/// tabulated s_0 = 0, s_l^2 = 2^(l-1) (size / 2)^2 with the least size, to the body's.
+///
+/// | symbol | name                                                             | unit |
+/// |--------|------------------------------------------------------------------|------|
+/// | s      | radius over which the table averages: s^2 = a^2 - (size / 2)^2   | m    |
+/// | a      | radius of the patch; size: mean edge length around               | m    |
+///
+/// Held so that the half-space's compliance plus w never falls below a tenth of the half-space's (0.06 between the
+/// radii): a wide patch on a layer thinner than the solve mesh resolves is then too soft, but no force ever jumps.
+class PatchTable {
+ public:
+  struct Own {
+    float pair
+        [6]
+        [6];  ///< W_00, W_11, W_22, W_01 + W_10, W_12 + W_21, W_20 + W_02, each xx, yy, zz, xy, yz, zx [1/m]
+  };
+  struct Second {
+    float mean
+        [9];  ///< of the unit radial double force and the unit tilts along the node's two tangents [1/m^2]
+  };
+  static constexpr double least = 0.1;
+
+  PatchTable() = default;
+  PatchTable(const TouchMesh& touch, std::vector<Own> own, std::vector<Second> second, std::size_t levels)
+      : unit_(unit(touch)), levels_(levels), own_(std::move(own)), second_(std::move(second)) {}
+
+  /// `column(k, l)` points to the field of load l (three forces, double force, two tilts) of node k: x of every vertex,
+  /// y and z `stride` further each.
+  template <class Column>
+  PatchTable(const SolveMesh& mesh, const TouchMesh& touch, double nu, unsigned threads, std::size_t stride,
+             const Column& column)
+      : unit_(unit(touch)) {
+    Vec3<double> low = mesh.vertices[0], high = low;
+    for (const auto& v : mesh.vertices) {
+      low = low.cwiseMin(v);
+      high = high.cwiseMax(v);
+    }
+    levels_ = 2;
+    while (radius2(levels_ - 1) < 0.25 * (high - low).squaredNorm()) ++levels_;
+    const std::size_t n = touch.nodes().size();
+    const std::vector<Vertices> at = places(mesh, touch);
+    std::vector<std::vector<Weight>> loaded(n * levels_), seen(n * levels_);  // nodes; vertices
+    detail::parallel_for(n * levels_, threads, [&](std::size_t i) {
+      loaded[i] = spread(touch, i / levels_, std::sqrt(radius2(i % levels_)));
+      for (const Weight& w : loaded[i])
+        for (int c = 0; c < 3; ++c)
+          add(seen[i], at[w.node].vertex[std::size_t(c)], w.weight * at[w.node].weight[c]);
+    });
+    std::vector<std::vector<std::uint32_t>> around(n);  // triangles
+    for (std::uint32_t t = 0; t < touch.triangles().size(); ++t)
+      for (auto k : touch.triangles()[t]) around[k].push_back(t);
+    own_.resize(touch.triangles().size() * levels_);
+    second_.resize(n * levels_);
+    std::vector<std::array<Mat3<double>, 9>> pairs(own_.size());
+    detail::parallel_for(n, threads, [&](std::size_t k) {
+      std::vector<std::uint32_t> slot(mesh.vertices.size(), ~0u), needed;
+      std::vector<Mat3<double>> field;
+      for (std::size_t level = 0; level < levels_; ++level) {
+        for (auto v : needed) slot[v] = ~0u;
+        needed.clear();
+        for (auto t : around[k])
+          for (auto i : touch.triangles()[t])
+            for (const Weight& w : seen[i * levels_ + level]) {
+              if (slot[w.node] != ~0u) continue;
+              slot[w.node] = static_cast<std::uint32_t>(needed.size());
+              needed.push_back(w.node);
+            }
+        field.assign(needed.size(), Mat3<double>::Zero());
+        for (const Weight& w : loaded[k * levels_ + level])
+          for (std::size_t l = 0; l < 3; ++l) {
+            const float* c = column(w.node, l);
+            for (std::size_t j = 0; j < needed.size(); ++j)
+              field[j].col(Eigen::Index(l)) += w.weight * read(c, stride, needed[j]);
+          }
+        for (auto t : around[k]) {
+          const auto& corner = touch.triangles()[t];
+          for (std::size_t i = 0; i < 3; ++i) {
+            Mat3<double> mean = Mat3<double>::Zero();
+            for (const Weight& w : seen[corner[i] * levels_ + level]) mean += w.weight * field[slot[w.node]];
+            for (std::size_t j = 0; j < 3; ++j)
+              if (corner[j] == k) pairs[t * levels_ + level][3 * i + j] = mean;
+          }
+        }
+        for (std::size_t l = 0; l < 3; ++l) {
+          Vec3<double> u = Vec3<double>::Zero();
+          for (const Weight& q : loaded[k * levels_ + level]) {
+            const Vec3<double> load = q.weight * (l == 0 ? Vec3<double>(Vec3<double>::UnitX())
+                                                         : in_tangents(touch, q.node, tangent(touch, k, l)));
+            for (std::size_t i = 0; i < 3; ++i)
+              if (load[Eigen::Index(i)] != 0)
+                for (const Weight& w : seen[k * levels_ + level])
+                  u += load[Eigen::Index(i)] * w.weight * read(column(q.node, 3 + i), stride, w.node);
+          }
+          for (std::size_t i = 0; i < 3; ++i)
+            second_[k * levels_ + level].mean[3 * l + i] = static_cast<float>(u[Eigen::Index(i)]);
+        }
+      }
+    });
+    for (std::size_t i = 0; i < own_.size(); ++i) {
+      double size = 0;
+      for (auto k : touch.triangles()[i / levels_]) size = (std::max)(size, touch.nodes()[k].size);
+      const DiscCompliance near = disc_compliance(std::sqrt(radius2(i % levels_) + 0.25 * size * size), nu);
+      constexpr std::size_t pair_of[6][2] = {{0, 0}, {4, 4}, {8, 8}, {1, 3}, {5, 7}, {6, 2}};
+      for (std::size_t p = 0; p < 6; ++p) {
+        const Mat3<double> mean = 0.5 * (pairs[i][pair_of[p][0]] + pairs[i][pair_of[p][1]]);
+        const Mat3<double> w = (p < 3 ? 1 : 2) * held(0.5 * (mean + mean.transpose()), near);
+        const double entry[6] = {w(0, 0), w(1, 1), w(2, 2), w(0, 1), w(1, 2), w(2, 0)};
+        for (int e = 0; e < 6; ++e) own_[i].pair[p][e] = static_cast<float>(entry[e]);
+      }
+    }
+  }
+
+  /// Where s^2 stands in the table.
+  struct Level {
+    std::size_t below;
+    double part;
+  };
+  [[nodiscard]] Level level(double s2) const noexcept {
+    const double t = s2 / unit_;
+    Level at{0, (std::max)(t, 0.0)};
+    if (t >= 1) {
+      int exponent = 0;
+      at.part = 2 * std::frexp(t, &exponent) - 1;  // t = 2^(exponent - 1) (1 + part)
+      at.below = static_cast<std::size_t>(exponent);
+    }
+    return at.below < levels_ - 1 ? at : Level{levels_ - 2, 1};
+  }
+  /// w at a place of triangle t.
+  [[nodiscard]] Mat3<double> own(std::size_t t, const Vec3<double>& l, const Level& at) const noexcept {
+    using Six = Eigen::Matrix<double, 6, 1>;
+    const double g[6] = {l[0] * l[0], l[1] * l[1], l[2] * l[2], l[0] * l[1], l[1] * l[2], l[2] * l[0]};
+    Six w = Six::Zero();
+    const Own &low = own_[t * levels_ + at.below], &high = own_[t * levels_ + at.below + 1];
+    for (int p = 0; p < 6; ++p)
+      for (int e = 0; e < 6; ++e)
+        w[e] += g[p] * ((1 - at.part) * double(low.pair[p][e]) + at.part * double(high.pair[p][e]));
+    Mat3<double> out;
+    out << w[0], w[3], w[5], w[3], w[1], w[4], w[5], w[4], w[2];
+    return out;
+  }
+  /// Q of node k for its double force and tilts.
+  [[nodiscard]] Vec3<double> second(std::size_t k, const Vec3<double>& loads,
+                                    const Level& at) const noexcept {
+    using Nine = Eigen::Map<const Eigen::Matrix3f>;
+    const Nine low(second_[k * levels_ + at.below].mean), high(second_[k * levels_ + at.below + 1].mean);
+    return (1 - at.part) * (low.cast<double>() * loads) + at.part * (high.cast<double>() * loads);
+  }
+  [[nodiscard]] const std::vector<Own>& own_rows() const noexcept { return own_; }
+  [[nodiscard]] const std::vector<Second>& second_rows() const noexcept { return second_; }
+  [[nodiscard]] std::size_t memory() const noexcept {
+    return own_.size() * sizeof(Own) + second_.size() * sizeof(Second);
+  }
+
+ private:
+  struct Weight {
+    std::uint32_t node;
+    double weight;
+  };
+  struct Vertices {
+    std::array<std::uint32_t, 3> vertex;
+    Vec3<double> weight;
+  };
+
+  [[nodiscard]] static double unit(const TouchMesh& touch) {
+    double least_size = (std::numeric_limits<double>::max)();
+    for (const auto& node : touch.nodes()) least_size = (std::min)(least_size, node.size);
+    return 0.25 * least_size * least_size;
+  }
+  [[nodiscard]] static Vec3<double> tangent(const TouchMesh& touch, std::size_t k, std::size_t number) {
+    const Vec3<double>& n = touch.nodes()[k].normal;
+    const Vec3<double> t1 = perpendicular(n);
+    return number == 1 ? t1 : Vec3<double>(n.cross(t1));
+  }
+  [[nodiscard]] static Vec3<double> in_tangents(const TouchMesh& touch, std::size_t k,
+                                                const Vec3<double>& tilt) {
+    return {0, tilt.dot(tangent(touch, k, 1)), tilt.dot(tangent(touch, k, 2))};
+  }
+  [[nodiscard]] double radius2(std::size_t level) const noexcept {
+    return level == 0 ? 0 : std::ldexp(unit_, int(level) - 1);
+  }
+  [[nodiscard]] static Vec3<double> read(const float* c, std::size_t stride, std::uint32_t v) noexcept {
+    return {double(c[v]), double(c[stride + v]), double(c[2 * stride + v])};
+  }
+  static void add(std::vector<Weight>& list, std::uint32_t node, double weight) {
+    const auto found =
+        std::find_if(list.begin(), list.end(), [node](const Weight& w) { return w.node == node; });
+    if (found == list.end())
+      list.push_back({node, weight});
+    else
+      found->weight += weight;
+  }
+
+  // Where each node's load acts, as a place of the solve mesh.
+  [[nodiscard]] static std::vector<Vertices> places(const SolveMesh& mesh, const TouchMesh& touch) {
+    std::vector<std::vector<std::uint32_t>> around(mesh.vertices.size());
+    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
+      if (!mesh.fixed_triangle[t])
+        for (auto v : mesh.triangles[t]) around[v].push_back(t);
+    std::vector<Vertices> at;
+    for (const auto& node : touch.nodes()) {
+      double best = (std::numeric_limits<double>::max)();
+      Vertices found{};
+      for (auto t : around[node.vertex]) {
+        const auto& c = mesh.triangles[t];
+        const Vec3<double>&p = mesh.vertices[c[0]], &q = mesh.vertices[c[1]], &r = mesh.vertices[c[2]];
+        const Vec3<double> w = detail::closest_on_triangle<double>(node.source, p, q, r);
+        const double distance = (w[0] * p + w[1] * q + w[2] * r - node.source).squaredNorm();
+        if (distance < best) {
+          best = distance;
+          found = {c, w};
+        }
+      }
+      at.push_back(found);
+    }
+    return at;
+  }
+
+  // The stuck disc's weight around the node.
+  [[nodiscard]] static std::vector<Weight> spread(const TouchMesh& touch, std::size_t k, double s) {
+    const SolveMesh::Node& node = touch.nodes()[k];
+    std::vector<Weight> patch;
+    if (!(s > 0)) {
+      patch.push_back({static_cast<std::uint32_t>(k), 1});
+      return patch;
+    }
+    const Vec3<double> t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
+    for (const auto& p : disc_points()) {
+      const TouchPlace at = touch.locate(node.source + s * (p[0] * t1 + p[1] * t2));
+      for (std::size_t c = 0; c < 3; ++c)
+        add(patch, at.node[c], at.weight[Eigen::Index(c)] / double(disc_points().size()));
+    }
+    return patch;
+  }
+
+  [[nodiscard]] static Mat3<double> held(const Mat3<double>& own, const DiscCompliance& near) {
+    Eigen::SelfAdjointEigenSolver<Mat3<double>> eigen(own);
+    const double low = -(1 - least) * (std::min)(near.normal, near.along);
+    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(low).asDiagonal() *
+           eigen.eigenvectors().transpose();
+  }
+
+  double unit_ = 1;
+  std::size_t levels_ = 2;
+  std::vector<Own> own_;        // per triangle and level
+  std::vector<Second> second_;  // per node and level
+};
+
+}  // namespace palpate

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: MIT
+
+// Bodies that no closed form knows: concave, thin, in two pieces, with edges. No reference: what is checked is that the
+// answer is finite and bounded by theory, that it does not jump while the contact wanders, and that twice the solve
+// vertices change it by little.
+
+#include <palpate/response/response_contact.hpp>
+
+#include "support/check.hpp"
+#include "support/response_meshes.hpp"
+
+#include <random>
+#include <string>
+
+namespace {
+using namespace palpate;
+using V = Vec3<double>;
+
+// Surface of the cells of a grid that are filled; edge [m] of a cell.
+template <class Filled>
+MeshData<double> cells(std::array<int, 3> n, double edge, const Filled& filled) {
+  MeshData<double> mesh;
+  std::map<std::array<int, 3>, std::uint32_t> number;
+  const auto vertex = [&](std::array<int, 3> c) {
+    const auto [at, is_new] = number.try_emplace(c, static_cast<std::uint32_t>(mesh.vertices.size()));
+    if (is_new) mesh.vertices.push_back(edge * V(c[0], c[1], c[2]));
+    return at->second;
+  };
+  const auto full = [&](std::array<int, 3> c) {
+    for (std::size_t i = 0; i < 3; ++i)
+      if (c[i] < 0 || c[i] >= n[i]) return false;
+    return bool(filled(c[0], c[1], c[2]));
+  };
+  for (int i = 0; i < n[0]; ++i)
+    for (int j = 0; j < n[1]; ++j)
+      for (int k = 0; k < n[2]; ++k) {
+        const std::array<int, 3> c{i, j, k};
+        if (!full(c)) continue;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          for (int side = 0; side < 2; ++side) {
+            auto beside = c;
+            beside[axis] += side == 1 ? 1 : -1;
+            if (full(beside)) continue;
+            const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+            std::uint32_t q[4];
+            const int du[4] = {0, 1, 1, 0}, dv[4] = {0, 0, 1, 1};
+            for (int m = 0; m < 4; ++m) {
+              auto p = c;
+              p[axis] += side;
+              p[u] += du[m];
+              p[v] += dv[m];
+              q[m] = vertex(p);
+            }
+            mesh.triangles.push_back(side == 1 ? std::array{q[0], q[1], q[2]} : std::array{q[0], q[2], q[1]});
+            mesh.triangles.push_back(side == 1 ? std::array{q[0], q[2], q[3]} : std::array{q[0], q[3], q[2]});
+          }
+      }
+  return mesh;
+}
+MeshData<double> torus(double R, double r, int n, int m) {
+  MeshData<double> mesh;
+  const auto id = [&](int i, int j) { return static_cast<std::uint32_t>((i % n) * m + j % m); };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < m; ++j) {
+      const double a = 2 * std::numbers::pi * i / n, b = 2 * std::numbers::pi * j / m;
+      mesh.vertices.push_back(
+          {(R + r * std::cos(b)) * std::cos(a), r * std::sin(b), (R + r * std::cos(b)) * std::sin(a)});
+      mesh.triangles.push_back({id(i, j), id(i, j + 1), id(i + 1, j + 1)});
+      mesh.triangles.push_back({id(i, j), id(i + 1, j + 1), id(i + 1, j)});
+    }
+  return mesh;
+}
+MeshData<double> two_spheres() {
+  MeshData<double> mesh = test::ellipsoid_mesh(V(0.03, 0.03, 0.03), 8);
+  const MeshData<double> other = test::ellipsoid_mesh(V(0.02, 0.03, 0.02), 8);
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const V& p : other.vertices) mesh.vertices.push_back(p + V(0.06, 0, 0));
+  for (const auto& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  return mesh;
+}
+
+struct Body {
+  const char* name;
+  MeshData<double> mesh;
+  double held_below;  // y [m]
+  double nu;
+  double jump;         // bound of the largest jump of a force, in half-space forces
+  double convergence;  // bound of the median change of force between the two solve meshes
+};
+
+// A probe that is kept at a small distance outside; its nearest point of the surface and the direction from there are
+// continuous over convex edges.
+class Walker {
+ public:
+  Walker(const TriangleBvh<double>& tree, const MeshData<double>& mesh, double distance, unsigned seed)
+      : tree_(tree), random_(seed), distance_(distance) {
+    const auto& t = mesh.triangles[random_() % mesh.triangles.size()];
+    const V &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+    place = (a + b + c) / 3;
+    normal = (b - a).cross(c - a).normalized();
+    heading_ = perpendicular(normal);
+  }
+  V place, normal;
+  void step(double length) {
+    std::normal_distribution<double> turn(0, 0.1);
+    heading_ = tangential(V(heading_ + V(turn(random_), turn(random_), turn(random_))), normal).normalized();
+    const V probe = place + distance_ * normal + length * heading_;
+    const auto at = tree_.closest(probe);
+    const V out = probe - at.position;
+    if (out.dot(normal) > 0.3 * out.norm() && (at.position - place).norm() < 3 * length) {
+      place = at.position;
+      normal = out.normalized();
+    } else {
+      heading_ = -heading_;  // a hollow: the nearest point would jump
+    }
+  }
+
+ private:
+  const TriangleBvh<double>& tree_;
+  std::mt19937 random_;
+  double distance_;
+  V heading_;
+};
+
+void try_body(const Body& body) {
+  const TriangleBvh<double> tree(body.mesh);
+  V low = body.mesh.vertices[0], high = low;
+  for (const V& p : body.mesh.vertices) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  const double size = (high - low).norm();
+  const auto make = [&](double vertices) {
+    return ResponseField(body.mesh, [&](const V& p) { return p.y() <= body.held_below; },
+                         {.E = 1e5, .nu = body.nu, .mesh = {.vertices = vertices}});
+  };
+  const ResponseField field = make(200), fine = make(400);
+  const double h = field.mesh().length, mu = field.shear_modulus();
+  std::vector<V> points;
+  for (std::size_t i = 0; i < body.mesh.vertices.size(); i += 1 + body.mesh.vertices.size() / 150)
+    points.push_back(body.mesh.vertices[i]);
+  const ResponseDisplay display(field, points);
+  ResponseTick<2> tick(field), linear(field, {.second_order = false});
+  ResponseTick<1> finer(fine, {.second_order = false});
+  std::vector<double> u(3 * points.size()), before(u.size()), change;
+  double force_jump = 0, field_jump = 0, most = 0, most_linear = 0, stiffest = 0;
+  const int paths = 5, steps = 2000;
+  std::array<ResponseContact<double>, 4> steepest;
+  std::size_t steep_count = 0;
+  double steep_moved = 0;
+  for (int path = 0; path < paths; ++path) {
+    const double a = size * std::array{0.01, 0.03, 0.06, 0.15, 0.4}[std::size_t(path)], d = 0.2 * a;
+    Walker one(tree, body.mesh, 0.3 * h, unsigned(path)), two(tree, body.mesh, 0.3 * h, unsigned(path) + 100);
+    V last[2], F[2];
+    std::array<ResponseContact<double>, 2> before_contacts;
+    for (int i = 0; i < steps; ++i) {
+      const V from[2] = {one.place, two.place}, turned[2] = {one.normal, two.normal};
+      one.step(0.005 * h);
+      two.step(0.005 * h);
+      const auto contact = [&](const Walker& w) {
+        return ResponseContact<double>{
+            .place = w.place,
+            .normal = w.normal,
+            .radius = a,
+            .displacement = -d * w.normal + 0.3 * d * tangential(V(0.6, 0.3, 0.74), w.normal)};
+      };
+      const ResponseContact<double> both[2] = {contact(one), contact(two)};
+      const std::size_t count = path % 2 == 0 ? 1 : 2;
+      tick.solve(both, count, F);
+      const double stiff =
+          mu * both[0].displacement.norm() / disc_compliance(a, body.nu).normal;  // half-space, at most
+      const double moved = ((one.place - from[0]).norm() + (two.place - from[1]).norm()) / (std::min)(h, a) +
+                           (one.normal - turned[0]).norm() + (two.normal - turned[1]).norm();
+      for (std::size_t c = 0; c < count; ++c) {
+        REQUIRE(is_finite(F[c]));
+        const double change_here = (F[c] - last[c]).norm() / stiff;
+        if (i > 0 && moved < 0.2 && change_here > force_jump) {
+          force_jump = change_here;
+          steepest = {before_contacts[0], before_contacts[1], both[0], both[1]};
+          steep_count = count;
+          steep_moved = moved;
+        }
+        last[c] = F[c];
+      }
+      before_contacts = {both[0], both[1]};
+      if (i % 20 == 0 || i % 20 == 1) {
+        tick.displace(display, u.data(), 3);
+        for (std::size_t k = 0; k < points.size(); ++k) {
+          const V v(u[3 * k], u[3 * k + 1], u[3 * k + 2]),
+              w(before[3 * k], before[3 * k + 1], before[3 * k + 2]);
+          REQUIRE(is_finite(v));
+          most = (std::max)(most, v.norm() / both[0].displacement.norm());
+          if (i % 20 == 1 && moved < 0.2)
+            field_jump = (std::max)(field_jump, (v - w).norm() / both[0].displacement.norm());
+        }
+        before = u;
+      }
+      if (i % 50 == 0) {
+        V coarse, better;
+        linear.solve(both, 1, &coarse);
+        linear.displace(display, u.data(), 3);
+        for (std::size_t k = 0; k < points.size(); ++k)
+          most_linear = (std::max)(
+              most_linear, V(u[3 * k], u[3 * k + 1], u[3 * k + 2]).norm() / both[0].displacement.norm());
+        finer.solve(both, 1, &better);
+        stiffest = (std::max)(stiffest, coarse.norm() / stiff);
+        if (one.place.y() > body.held_below + 2 * a)
+          change.push_back((coarse - better).norm() / better.norm());
+      }
+    }
+  }
+  // The step with the largest change of force, cut in 64: where the force is continuous, each part has a small share.
+  double share = 0;
+  {
+    V F[2], last[2];
+    for (int i = 0; i <= 64; ++i) {
+      ResponseContact<double> between[2];
+      for (std::size_t c = 0; c < 2; ++c) {
+        const auto mix = [&](const V& l, const V& r) { return V(l + i / 64.0 * (r - l)); };
+        between[c] = {mix(steepest[c].place, steepest[c + 2].place),
+                      mix(steepest[c].normal, steepest[c + 2].normal).normalized(), steepest[c].radius,
+                      mix(steepest[c].displacement, steepest[c + 2].displacement)};
+      }
+      tick.solve(between, steep_count, F);
+      for (std::size_t c = 0; c < steep_count; ++c) {
+        if (i > 0)
+          share = (std::max)(share, (F[c] - last[c]).norm() /
+                                        (mu * steepest[0].displacement.norm() /
+                                         disc_compliance(steepest[0].radius, body.nu).normal) /
+                                        force_jump);
+        last[c] = F[c];
+      }
+    }
+  }
+  std::sort(change.begin(), change.end());
+  const double median = change.empty() ? 0 : change[change.size() / 2],
+               worst = change.empty() ? 0 : change[change.size() * 95 / 100];
+  MESSAGE(std::string(body.name), ": force per half-space's ", stiffest, ", largest step of force ",
+          force_jump, " at ", steep_moved, ", of it in one 64th ", share, ", field's largest step ",
+          field_jump, ", largest |u| / d ", most, ", of first order ", most_linear,
+          ", change with twice the vertices: median ", median, ", 95 % ", worst, " of ", change.size());
+  CHECK(stiffest <= 1 / 0.06);  // PatchTable: the compliance is at least 0.06 of the half-space's smaller one
+  CHECK(share * force_jump < body.jump);
+  CHECK(median < body.convergence);
+}
+}  // namespace
+
+TEST_CASE("concave, thin, in pieces, with edges: finite, without jumps, converging") {
+  // Force jumps that are known and not understood stand in the bounds of torus and plates: docs/accuracy.md. The others have none:
+  // 0.3 is above the steepest slope that one 64th of a step can show, 0.13 on the box.
+  const auto block = [](int, int, int) { return true; };
+  try_body({"torus", torus(0.05, 0.02, 36, 18), -0.012, 0.5, 2, 0.1});
+  try_body({"L", cells({8, 8, 4}, 0.0125, [](int i, int j, int) { return i < 4 || j < 4; }), 1e-6, 0.45, 0.3,
+            0.1});
+  try_body({"plate 1:20, held below", cells({20, 1, 20}, 0.005, block), 1e-6, 0.45, 5, 0.15});
+  try_body({"plate 1:20, standing", cells({20, 20, 1}, 0.005, block), 1e-6, 0.3, 20, 0.3});
+  try_body({"two spheres", two_spheres(), -0.02, 0.5, 0.3, 0.1});
+  try_body({"box", cells({8, 8, 8}, 0.0125, block), 1e-6, 0.3, 0.3, 0.1});
+}
