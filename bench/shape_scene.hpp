@@ -8,6 +8,7 @@
 #include <palpate/deformation/beam_skeleton.hpp>
 #include <palpate/interpolation/phong.hpp>
 #include <palpate/surface/mesh_surface.hpp>
+#include <palpate/surface/sampled_surface.hpp>
 
 #include <bit>
 #include <span>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  How time and memory grow with the object's mesh. The same mesh is what the tool touches (a MeshSurface, double)
-/// and what is drawn (positions and normals, float), so that both grow, and both want the same caches.
+/// @file  How time and memory grow with the object's mesh. The same mesh is what the tool touches (sampled 2 mm apart:
+/// SampledSurface of a MeshSurface, double; bench/mesh has the mesh itself) and what is drawn (positions and normals, float), so that both grow, and both want the same caches.
 ///
 /// Every tick moves the tool, asks, and writes the whole shape, as one servo thread would:
 ///
@@ -67,7 +67,8 @@ int main(int argc, char** argv) {
         (std::clamp)(10000000 / wanted, std::size_t{100}, std::size_t{out.quick ? 400u : 2000u});
     const double before = heap_MB();
     const MeshData<float> mesh = ellipsoid<float>().mesh(wanted);
-    const MeshSurface<double> surface(TriangleMesh<double>(ellipsoid<double>().mesh(wanted)));
+    const SampledSurface<MeshSurface<double>> surface(
+        MeshSurface<double>(TriangleMesh<double>(ellipsoid<double>().mesh(wanted))), {.spacing = 2e-3});
     Shape shape(mesh, true);
     const double memory = heap_MB() - before;
     Shape bare(mesh, false);

@@ -56,7 +56,8 @@ void run(const Output& out, const char* name, const Object& object, const MeshDa
 int main(int argc, char** argv) {
   const Output out(argc, argv, "scene,rate_hz_requested,rate_hz_reached,period_p99_us,period_max_us,missed");
   const auto mesh = ellipsoid<float>().mesh(20000);
-  const MeshSurface<double> surface(TriangleMesh<double>(ellipsoid<double>().mesh(20000)));
+  const SampledSurface<MeshSurface<double>> surface(
+      MeshSurface<double>(TriangleMesh<double>(ellipsoid<double>().mesh(20000))), {.spacing = 2e-3});
   const auto exact = ellipsoid<double>();
   for (const int rate : {1000, 2000, 5000, 10000}) {
     run(out, "force", exact, mesh, Draw::nothing, rate);

@@ -239,6 +239,7 @@ void try_body(const Body& body) {
   CHECK(stiffest <= 1 / 0.06);  // PatchTable: the compliance is at least 0.06 of the half-space's smaller one
   CHECK(share * force_jump < body.jump);
   CHECK(median < body.convergence);
+  CHECK(most < 5.5);  // 4 d at the solve mesh's vertices, and a near field of up to 1.5 d between them
 }
 }  // namespace
 

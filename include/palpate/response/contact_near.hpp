@@ -33,6 +33,13 @@ struct ContactNear {
   bool tilted = false;  ///< tilt is not zero
   bool ball = false;    ///< Hertz's weight
 
+  /// All loads times `share`.
+  void scale(float share) noexcept {
+    along *= share;
+    tilt *= share;
+    push *= share;
+    for (float* part : {&normal, &dipole, &radial, &sink}) *part *= share;
+  }
   [[nodiscard]] PALPATE_INLINE Lane3 operator()(const Lane3& at) const noexcept {
     const Lane rx = at.x - place.x(), ry = at.y - place.y(), rz = at.z - place.z();
     const Lane z = rx * m.x() + ry * m.y() + rz * m.z();

@@ -261,12 +261,17 @@ class ContactSystem {
   void press(Contact& c) const noexcept {
     const SecondOrder& k = settings_.constants;
     const DiscCompliance near = disc_compliance(c.a, field_->nu());
-    const double depth = c.d.dot(c.m), held = std::clamp(depth, -2 * c.a, 2 * c.a), pushed = c.P.dot(c.m);
-    const double indented = std::clamp(near.normal * pushed, -2 * c.a, 2 * c.a);
+    const double depth = c.d.dot(c.m), held = std::clamp(depth, -2 * c.a, 2 * c.a);
     const Vec3<double> dt = c.d - depth * c.m;
+    // No force above the half-space's for d: where the body is far stiffer, the series in depth has nothing to say.
+    const double normal = c.P.dot(c.m);
+    const Vec3<double> indentation = near.along * c.P + (near.normal - near.along) * normal * c.m;
+    const double most = c.d.norm(), length = indentation.norm();
+    const Vec3<double> P = length > most ? Vec3<double>(most / length * c.P) : c.P;
+    const double pushed = P.dot(c.m), indented = near.normal * pushed;
     c.dn2 = indented * held;
     c.dipole = -pushed * held;
-    c.tilt = pushed * dt - held * (c.P - pushed * c.m);
+    c.tilt = pushed * dt - held * (P - pushed * c.m);
     c.push = near.along * k.drag * indented * dt - near.normal * k.softening * c.dn2 * c.m;
     if (c.dipole == 0) return;
     Vec3<double> second = c.push;

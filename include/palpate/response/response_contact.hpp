@@ -161,6 +161,28 @@ class ResponseTick {
     }
     const Row free(field_->is_free(), static_cast<Eigen::Index>(n));
     for (std::size_t axis = 0; axis < 3; ++axis) sum.segment(Eigen::Index(axis * n), Eigen::Index(n)) *= free;
+    hold_back();
+  }
+
+  // A body may move farther than the tool by its levers; a field beyond 4 d is one that the mesh does not resolve. It is
+  // drawn smaller: never a spike.
+  void hold_back() noexcept {
+    double d2 = 0;
+    for (std::size_t c = 0; c < count_; ++c) d2 = (std::max)(d2, contact_[c].d.squaredNorm());
+    const float share = fading(total_, 16 * d2);
+    if (share > 0.999f) return;
+    const std::size_t n = field_->stride();
+    Eigen::Map<Eigen::ArrayXf>(total_.data(), static_cast<Eigen::Index>(total_.size())) *= share;
+    Eigen::Map<Eigen::ArrayXf>(near_.data(), static_cast<Eigen::Index>(3 * count_ * n)) *= share;
+    for (std::size_t c = 0; c < count_; ++c) near_field_[c].scale(share);
+  }
+  // (1 + (u^2/most2)^4)^(-1/8) for the largest u of a field at the solve mesh's vertices.
+  [[nodiscard]] float fading(const std::vector<float>& field, double most2) const noexcept {
+    const auto n = static_cast<Eigen::Index>(field_->stride());
+    const Eigen::Map<const Eigen::ArrayXf> u(field.data(), 3 * n);
+    const float largest = (u.head(n).square() + u.segment(n, n).square() + u.tail(n).square()).maxCoeff();
+    const double r2 = most2 > 0 ? double(largest) / most2 : 0, r8 = r2 * r2 * r2 * r2;
+    return static_cast<float>(1 / std::sqrt(std::sqrt(std::sqrt(1 + r8))));
   }
 
   // The body's answer to the loads of second order. Where the mesh does not resolve it, it can be any size: held to about
@@ -178,11 +200,7 @@ class ResponseTick {
       else
         second += g[0] * column(3);
     }
-    const float most =
-        (second.head(n).square() + second.segment(n, n).square() + second.tail(n).square()).maxCoeff();
-    const double r2 = double(most) / (4 * c.d.squaredNorm()), r8 = r2 * r2 * r2 * r2;
-    Eigen::Map<Eigen::ArrayXf>(total_.data(), size) +=
-        static_cast<float>(1 / std::sqrt(std::sqrt(std::sqrt(1 + r8)))) * second;
+    Eigen::Map<Eigen::ArrayXf>(total_.data(), size) += fading(second_, 4 * c.d.squaredNorm()) * second;
   }
 
   // Linear over one triangle of the solve mesh, by coordinate: corner 0, and the edges from it.
