@@ -44,7 +44,7 @@ int run_file(const Options& options) {
   const MeshSurface<S> body{TriangleMesh<S>(mesh)};
   std::printf("%s: %zu vertices, %zu triangles, %.0f x %.0f x %.0f mm\n", options.object.c_str(), mesh.vertices.size(),
               mesh.triangles.size(), size.x(), size.y(), size.z());
-  return run(options, body, std::move(mesh), "response");
+  return run(options, body, std::move(mesh), "half-space");
 }
 
 }  // namespace touch

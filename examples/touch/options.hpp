@@ -41,7 +41,7 @@ inline constexpr const char* usage =
   --repair        weld, turn and drop in the files what is plainly wrong, and say so
   --script NAME   figure10 (default), press, slide
   --at X Z        where press and slide work, in metres from the object's middle (default 0 0)
-  --shape MODEL   how the object deforms: skeleton, half-space, response, or none. Default: skeleton; of files response
+  --shape MODEL   how the object deforms: skeleton, half-space, response, or none. Default: skeleton; of files half-space
   --rate HZ       servo rate asked of the device (default 1000)
   --stepped       simulated time instead of real time: same bits in every run (stand-in device only)
   --out FOLDER    where the results go (default out)
