@@ -18,7 +18,7 @@ TEST_CASE_TEMPLATE("saturated: the law's own bits up to the knee, the limit beyo
     const S d = knee * static_cast<S>(i) / S(100);
     CHECK(capped.force(d) == law.force(d));
     CHECK(capped.stiffness(d) == law.stiffness(d));
-    CHECK(capped.energy(d) == law.energy(d));
+    CHECK_RELATIVE(capped.energy(d), law.energy(d), test::ulps<S>(4));  // a compiler may contract a b + c in one place only
   }
   const S after = knee * (S(1) + S(2) * std::numeric_limits<S>::epsilon());
   CHECK_RELATIVE(capped.force(after), law.force(knee), ulps<S>(16));
