@@ -3,7 +3,7 @@
 /// @file  One force tick per composition: detection on an exact surface, regions, force, friction, wrench. Each row also
 /// prints what it computed (`touching` points, `F` in newtons), so that two builds can be seen to do the same work.
 
-#include <palpate/palpate.hpp>
+#include "scenes.hpp"
 
 #include <benchmark/benchmark.h>
 
@@ -14,19 +14,9 @@
 namespace {
 
 using namespace palpate;
-
-template <Real S>
-Ellipsoid<S> body() {
-  return Ellipsoid<S>({.axes = Vec3<S>(S(0.06), S(0.04), S(0.04))});
-}
-template <Real S>
-DuffingForce<S> law() {
-  return DuffingForce<S>({.c1 = S(40), .c3 = S(3e8)});  // the paper's
-}
-template <Real S>
-PowerLawFriction<S> fibre() {
-  return PowerLawFriction<S>({.K = S(0.562), .beta = S(0.75), .mu_dynamic = S(0.3)});
-}
+using bench::duffing;
+using bench::ellipsoid;
+using bench::fibre;
 
 /// Distance of the face's points [m]: all of them are to touch.
 double spacing(int side) { return side > 10 ? 0.3e-3 : 1e-3; }
@@ -79,34 +69,34 @@ void run(benchmark::State& state, Solver solver, const std::vector<Pose<typename
 template <Real S>
 void point_frictionless(benchmark::State& state) {
   using Solver = ContactSolver<Ellipsoid<S>, DuffingForce<S>>;
-  run(state, Solver({body<S>(), {}, law<S>(), {}, {}}), sliding<S>(S(2e-3)));
+  run(state, Solver({ellipsoid<S>(), {}, duffing<S>(), {}, {}}), sliding<S>(S(2e-3)));
 }
 template <Real S>
 void point_out_of_reach(benchmark::State& state) {
   using Solver = ContactSolver<Ellipsoid<S>, DuffingForce<S>>;
-  run(state, Solver({body<S>(), {}, law<S>(), {}, {}}), sliding<S>(S(-20e-3)));
+  run(state, Solver({ellipsoid<S>(), {}, duffing<S>(), {}, {}}), sliding<S>(S(-20e-3)));
 }
 template <Real S>
 void point_friction(benchmark::State& state) {
   using Solver = ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>>;
-  run(state, Solver({body<S>(), {}, law<S>(), fibre<S>(), {}}), sliding<S>(S(2e-3)));
+  run(state, Solver({ellipsoid<S>(), {}, duffing<S>(), fibre<S>(), {}}), sliding<S>(S(2e-3)));
 }
 template <Real S>
 void region_friction(benchmark::State& state) {
   using Solver = ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, SingleRegion<>>;
-  run(state, Solver({body<S>(), face<S>(int(state.range(0))), law<S>(), fibre<S>(), {}}), sliding<S>(S(2e-3)));
+  run(state, Solver({ellipsoid<S>(), face<S>(int(state.range(0))), duffing<S>(), fibre<S>(), {}}), sliding<S>(S(2e-3)));
 }
 template <Real S>
 void regions_friction(benchmark::State& state) {
   using Solver = ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<8>>;
   const int side = int(state.range(0));
-  run(state, Solver({body<S>(), face<S>(side), law<S>(), fibre<S>(), {1.5 * spacing(side)}}), sliding<S>(S(2e-3)));
+  run(state, Solver({ellipsoid<S>(), face<S>(side), duffing<S>(), fibre<S>(), {1.5 * spacing(side)}}), sliding<S>(S(2e-3)));
 }
 template <Real S>
 void regions_out_of_reach(benchmark::State& state) {
   using Solver = ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<8>>;
   const int side = int(state.range(0));
-  run(state, Solver({body<S>(), face<S>(side), law<S>(), fibre<S>(), {1.5 * spacing(side)}}), sliding<S>(S(-20e-3)));
+  run(state, Solver({ellipsoid<S>(), face<S>(side), duffing<S>(), fibre<S>(), {1.5 * spacing(side)}}), sliding<S>(S(-20e-3)));
 }
 
 BENCHMARK(point_out_of_reach<double>);

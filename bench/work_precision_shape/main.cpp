@@ -112,11 +112,36 @@ void no_deformation(const Table& table) {
       [&]() -> const std::vector<V>& { return still; }, [] {}, 1.0 + 1e-12);
 }
 
+// The row of a deformation model that writes D; its force is that of the fitted law.
+template <class D, class Model>
+void drawn(const Table& table, const std::string& name, double setup, Model& model, double bound) {
+  const Truth& t = table.truth;
+  const DuffingForce<double> law = fitted_law(t);
+  std::vector<D> rest(3 * t.rest.size()), now(rest.size());
+  model.write_rest(VertexBuffer<D>{.positions = rest.data()});
+  const VertexBuffer<D> buffer{.positions = now.data()};
+  std::vector<V> u(t.rest.size());
+  table.row(
+      name, scalar_name<D>, t.rest.size(), setup,
+      [&](double d) {
+        const double F = law.force(d);
+        const ContactState<double> contact = pressed(t, d, F);
+        (void)model.write(std::span<const ContactState<double>>(&contact, 1), buffer);
+        return F;
+      },
+      [&]() -> const std::vector<V>& {
+        for (std::size_t v = 0; v < u.size(); ++v)
+          for (int i = 0; i < 3; ++i)
+            u[v][i] = double(now[3 * v + std::size_t(i)] - rest[3 * v + std::size_t(i)]);
+        return u;
+      },
+      [&] { model.write_rest(buffer); }, bound);
+}
+
 template <template <class> class Field, class D, class Body>
 void skeleton(const Table& table, const char* name, const Body& body, const V& bottom, double volume,
               double bound) {
   const Truth& t = table.truth;
-  const DuffingForce<double> law = fitted_law(t);
   using Beams = Skeleton<double>;
   using Model = BeamSkeletonDeformation<RegionSkeletons<Beams>, Field<D>>;
   MeshData<D> mesh;
@@ -132,53 +157,18 @@ void skeleton(const Table& table, const char* name, const Body& body, const V& b
                   AreaNeighbourhood<D>({.reference_area = D(4 * t.patch * t.patch)}), mesh,
                   typename Model::Params{.fixed = bottom, .normals = false});
   });
-  std::vector<D> rest(3 * t.rest.size()), now(rest.size());
-  model->write_rest(VertexBuffer<D>{.positions = rest.data()});
-  const VertexBuffer<D> buffer{.positions = now.data()};
-  std::vector<V> u(t.rest.size());
-  table.row(
-      std::string("palpate BeamSkeleton ") + name, scalar_name<D>, t.rest.size(), setup,
-      [&](double d) {
-        const double F = law.force(d);
-        const ContactState<double> contact = pressed(t, d, F);
-        (void)model->write(std::span<const ContactState<double>>(&contact, 1), buffer);
-        return F;
-      },
-      [&]() -> const std::vector<V>& {
-        for (std::size_t v = 0; v < u.size(); ++v)
-          for (int i = 0; i < 3; ++i)
-            u[v][i] = double(now[3 * v + std::size_t(i)] - rest[3 * v + std::size_t(i)]);
-        return u;
-      },
-      [&] { model->write_rest(buffer); }, bound);
+  drawn<D>(table, std::string("palpate BeamSkeleton ") + name, setup, *model, bound);
 }
 
 void half_space(const Table& table, double bound) {
   const Truth& t = table.truth;
-  const DuffingForce<double> law = fitted_law(t);
   std::optional<HalfSpaceDeformation<double>> model;
   const double setup = timed_ms([&] {
     model.emplace(
         MeshData<double>{t.rest, t.triangles}, [&](const V& p) { return p.y() <= t.held(); },
         HalfSpaceDeformation<double>::Params{.nu = t.nu, .smallest_radius = t.patch, .normals = false});
   });
-  std::vector<double> now(3 * t.rest.size());
-  const VertexBuffer<double> buffer{.positions = now.data()};
-  std::vector<V> u(t.rest.size());
-  table.row(
-      "palpate HalfSpace", "double", t.rest.size(), setup,
-      [&](double d) {
-        const double F = law.force(d);
-        const ContactState<double> contact = pressed(t, d, F);
-        (void)model->write(std::span<const ContactState<double>>(&contact, 1), buffer);
-        return F;
-      },
-      [&]() -> const std::vector<V>& {
-        for (std::size_t v = 0; v < u.size(); ++v)
-          u[v] = V(now[3 * v], now[3 * v + 1], now[3 * v + 2]) - t.rest[v];
-        return u;
-      },
-      [&] { model->write_rest(buffer); }, bound);
+  drawn<double>(table, "palpate HalfSpace", setup, *model, bound);
 }
 
 void response(const Table& table, double vertices, double bound) {

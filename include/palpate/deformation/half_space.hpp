@@ -6,7 +6,6 @@
 #include <palpate/deformation/concept.hpp>
 #include <palpate/deformation/fixed_base.hpp>
 #include <palpate/deformation/vertex_normals.hpp>
-#include <palpate/interpolation/concept.hpp>
 
 #include <Eigen/LU>
 
@@ -53,7 +52,16 @@ class HalfSpaceDeformation {
   HalfSpaceDeformation(const MeshData<S>& mesh, const Fixed& fixed, const Params& params = {})
       : p_(checked(params, mesh)), base_(mesh, fixed, static_cast<double>(params.nu), name) {
     set_vertices(mesh);
-    if (p_.normals) normals_ = VertexNormals<float>(mesh.triangles, mesh.vertices.size());
+    if (!p_.normals) return;
+    normals_ = VertexNormals<float>(mesh.triangles, mesh.vertices.size());
+    for (auto& list : rest_normal_) list.resize(mesh.vertices.size());
+    displace();
+    normals_.each_unit(now_[0].data(), now_[1].data(), now_[2].data(), rest_normal_,
+                       [this](std::size_t v, float x, float y, float z) {
+                         rest_normal_[0][v] = x;
+                         rest_normal_[1][v] = y;
+                         rest_normal_[2][v] = z;
+                       });
   }
 
   /// Fills the whole buffer with the undeformed shape. The next write() starts from it.
@@ -96,7 +104,6 @@ class HalfSpaceDeformation {
   static constexpr const char* name = "HalfSpaceDeformation";
   static constexpr double scale = 1 / (4 * std::numbers::pi);  // of near_field.hpp
   using V = Vec3<double>;
-  using M = Mat3<double>;
   using Screw = detail::Screw;
   using Lane = detail::Lane;
   static constexpr std::size_t lane = 4;
@@ -152,15 +159,11 @@ class HalfSpaceDeformation {
     }
   }
 
-  // A disc under a bent surface: outside, the depth below its rim's plane (see response/contact_near.hpp).
-  [[nodiscard]] static double depth_of(double z, double square, double a) noexcept {
-    return (std::max)(z * (1 - (std::min)(a * a / (std::max)(square, 1e-12 * a * a), 1.0)), 0.0);
-  }
   [[nodiscard]] V contact_field(const Contact& c, const V& x, const V& f) const noexcept {
     const V r = x - c.x;
-    return scale *
-           disc_load(r, c.m, depth_of(r.dot(c.m), r.squaredNorm(), c.a), c.a, f, static_cast<double>(p_.nu));
+    return scale * disc_load(r, c.m, edge_depth(r, c.m, c.a), c.a, f, static_cast<double>(p_.nu));
   }
+
   // Keeps the contacts; false when they are those of the last tick.
   bool take(std::span<const ContactState<S>> contacts) noexcept {
     std::array<Contact, Capacity> now;
@@ -360,20 +363,11 @@ class HalfSpaceDeformation {
         out.positions, out.position_stride, moves_.size(), [](std::size_t v) { return v; }, now_[0].data(),
         now_[1].data(), now_[2].data());
     if (!p_.normals || out.normals == nullptr) return;
-    constexpr std::size_t lanes = VertexNormals<float>::lanes;
-    std::array<std::array<float, lanes>, 3> n;
-    for (const auto& run : normals_.runs()) {
-      normals_.area(run, 0, now_[0].data(), now_[1].data(), now_[2].data(), n[0].data(), n[1].data(),
-                    n[2].data());
-      for (std::size_t i = 0; i < lanes; ++i) {
-        const float square = n[0][i] * n[0][i] + n[1][i] * n[1][i] + n[2][i] * n[2][i];
-        const float unit = detail::inverse_root(square);
-        for (auto& component : n) component[i] *= unit;
-      }
-      detail::store3(
-          out.normals, out.normal_stride, run.count, [&](std::size_t i) { return run.first + i; },
-          n[0].data(), n[1].data(), n[2].data());
-    }
+    normals_.each_unit(now_[0].data(), now_[1].data(), now_[2].data(), rest_normal_,
+                       [&](std::size_t v, float x, float y, float z) {
+                         detail::store3(
+                             out.normals, out.normal_stride, 1, [v](std::size_t) { return v; }, &x, &y, &z);
+                       });
   }
 
   static constexpr int most_rows = 3 * static_cast<int>(Capacity);
@@ -387,6 +381,7 @@ class HalfSpaceDeformation {
   Profile profile_;
   VertexNormals<float> normals_;
   std::array<std::vector<float>, 3> now_;  // places [m]
+  std::array<std::vector<float>, 3> rest_normal_;
   std::array<Contact, Capacity> contact_{};
   std::array<V, Capacity> force_{};
   Screw load_ = Screw::Zero(), motion_ = Screw::Zero();

@@ -130,7 +130,6 @@ class ResponseFieldDeformation {
 
  private:
   static constexpr const char* name = "ResponseFieldDeformation";
-  static constexpr std::size_t lanes = VertexNormals<float>::lanes;
 
   template <Real T>
   static PALPATE_INLINE void put(unsigned char* at, T x, T y, T z) noexcept {
@@ -157,6 +156,11 @@ class ResponseFieldDeformation {
     return !same;
   }
 
+  template <class Emit>
+  void each_normal(const Emit& emit) const noexcept {
+    normals_.each_unit(position_[0].data(), position_[1].data(), position_[2].data(), rest_normal_, emit);
+  }
+
   void rest() noexcept {
     last_count_ = 0;
     for (std::size_t slot = 0; slot < display_.slots(); ++slot) {
@@ -164,33 +168,6 @@ class ResponseFieldDeformation {
       position_[0][v] = display_.x()[slot];
       position_[1][v] = display_.y()[slot];
       position_[2][v] = display_.z()[slot];
-    }
-  }
-
-  // emit(vertex, x, y, z) with the unit normal of every vertex; a collapsed one keeps its undeformed normal.
-  template <class Emit>
-  void each_normal(const Emit& emit) const noexcept {
-    using Lanes = Eigen::Array<float, static_cast<int>(lanes), 1>;
-    alignas(32) float x[lanes], y[lanes], z[lanes];
-    for (const auto& run : normals_.runs()) {
-      normals_.area(run, 0, position_[0].data(), position_[1].data(), position_[2].data(), x, y, z);
-      const Lanes nx = Lanes::Map(x), ny = Lanes::Map(y), nz = Lanes::Map(z),
-                  square = nx * nx + ny * ny + nz * nz;
-      const Lanes scale = square.max((std::numeric_limits<float>::min)()).rsqrt();
-      Lanes::Map(x) = nx * scale;
-      Lanes::Map(y) = ny * scale;
-      Lanes::Map(z) = nz * scale;
-      if (square.minCoeff() > (std::numeric_limits<float>::min)()) {
-        for (std::uint32_t i = 0; i < run.count; ++i) emit(run.first + i, x[i], y[i], z[i]);
-        continue;
-      }
-      for (std::uint32_t i = 0; i < run.count; ++i) {
-        const std::size_t v = run.first + i;
-        if (square[i] > (std::numeric_limits<float>::min)())
-          emit(v, x[i], y[i], z[i]);
-        else
-          emit(v, rest_normal_[0][v], rest_normal_[1][v], rest_normal_[2][v]);
-      }
     }
   }
 

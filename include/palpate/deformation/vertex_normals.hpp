@@ -4,11 +4,12 @@
 /// @file  Area-weighted vertex normals of a closed mesh whose vertices move.
 
 #include <palpate/core/error.hpp>
-#include <palpate/interpolation/partition.hpp>
+#include <palpate/interpolation/concept.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -96,6 +97,32 @@ class VertexNormals {
     detail::store_lanes(out_x, sx);
     detail::store_lanes(out_y, sy);
     detail::store_lanes(out_z, sz);
+  }
+
+  /// emit(vertex, x, y, z) with every vertex's unit normal; one whose ring has collapsed has `rest`, its three lists of
+  /// components.
+  template <class Emit>
+  void each_unit(const S* x, const S* y, const S* z, const std::array<std::vector<S>, 3>& rest,
+                 const Emit& emit) const noexcept {
+    constexpr S tiny = (std::numeric_limits<S>::min)();
+    std::array<S, lanes> nx, ny, nz, square;
+    for (const Run& run : runs_) {
+      area(run, 0, x, y, z, nx.data(), ny.data(), nz.data());
+      for (std::size_t i = 0; i < lanes; ++i) square[i] = nx[i] * nx[i] + ny[i] * ny[i] + nz[i] * nz[i];
+      for (std::size_t i = 0; i < lanes; ++i) {
+        const S scale = detail::inverse_root(square[i]);
+        nx[i] *= scale;
+        ny[i] *= scale;
+        nz[i] *= scale;
+      }
+      for (std::size_t i = 0; i < run.count; ++i) {
+        const std::size_t v = run.first + i;
+        if (square[i] > tiny)
+          emit(v, nx[i], ny[i], nz[i]);
+        else
+          emit(v, rest[0][v], rest[1][v], rest[2][v]);
+      }
+    }
   }
 
  private:

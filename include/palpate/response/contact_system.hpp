@@ -76,12 +76,10 @@ class ContactSystem {
     c.tilt.setZero();
     c.push.setZero();
     c.place = field_->touch().locate(c.x);
-    c.level = field_->table().level(averaged(c));
-    // Far from any touchable place, deep inside the fixed region, the nearest place may jump; there w has faded away. On an edge, a
-    // quarter of the size away, it is 0.996 of w.
-    double size = 0;
-    for (std::size_t i = 0; i < 3; ++i)
-      size += c.place.weight[Eigen::Index(i)] * field_->touch().nodes()[c.place.node[i]].size;
+    const double size = mean_size(c);
+    c.level = field_->table().level(averaged(c, size));
+    // Far from any touchable place, deep inside the fixed region, the nearest place may jump; there w has faded away. On an
+    // edge, a quarter of the size away, it is 0.996 of w.
     const double far2 = c.place.distance2 / (size * size);
     c.share = 1 / (1 + far2 * far2);
     c.w = c.share * c.share * field_->table().own(c.place.triangle, c.place.weight, c.level);
@@ -97,11 +95,15 @@ class ContactSystem {
     const double r2 = second.squaredNorm() / (0.25 * c.d.squaredNorm()), r8 = r2 * r2 * r2 * r2;
     return 1 / std::sqrt(std::sqrt(std::sqrt(1 + r8)));
   }
-  // s^2 of patch_table.hpp.
-  [[nodiscard]] double averaged(const Contact& c) const noexcept {
+  // Size of the nodes around the contact's place, interpolated.
+  [[nodiscard]] double mean_size(const Contact& c) const noexcept {
     double size = 0;
     for (std::size_t i = 0; i < 3; ++i)
       size += c.place.weight[Eigen::Index(i)] * field_->touch().nodes()[c.place.node[i]].size;
+    return size;
+  }
+  // s^2 of patch_table.hpp.
+  [[nodiscard]] static double averaged(const Contact& c, double size) noexcept {
     return c.a * c.a - 0.25 * size * size;
   }
   // Nodes that share the force.
@@ -118,7 +120,7 @@ class ContactSystem {
           patch.push_back({p.node[i], weight});
       }
     };
-    const double wide2 = averaged(c);
+    const double wide2 = averaged(c, mean_size(c));
     if (!(wide2 > 0)) return add(c.place, c.share);
     const double s = std::sqrt(wide2);
     const Vec3<double> t1 = perpendicular(c.m), t2 = c.m.cross(t1);
@@ -250,11 +252,6 @@ class ContactSystem {
     }
     return kept(out, cj) * out;
   }
-  // Depth below the patch: the half-space's plane bends with the surface, see contact_near.hpp.
-  [[nodiscard]] static double edge_depth(const Vec3<double>& r, const Vec3<double>& m, double a) noexcept {
-    return (std::max)(r.dot(m) * (1 - (std::min)(1.0, a * a / (std::max)(r.squaredNorm(), 1e-300))), 0.0);
-  }
-
   // Loads of second order by a solved contact, and the body's answer. The load has moved with the tool: far away that is the
   // moment of the force F by the way d. Near by, a factor of d_n is the local indentation delta_n = C_near P, which is
   // less where the body as a whole gives way.

@@ -237,6 +237,12 @@ struct DiscCompliance {
   return points;
 }
 
+/// Depth z >= 0 below a disc of radius a under a surface that bends away from its plane: at r, outside, below the plane of
+/// the disc's own edge (see contact_near.hpp); within the radius 0.
+[[nodiscard]] inline double edge_depth(const Vec3<double>& r, const Vec3<double>& m, double a) noexcept {
+  return (std::max)(r.dot(m) * (1 - (std::min)(1.0, a * a / (std::max)(r.squaredNorm(), 1e-300))), 0.0);
+}
+
 /// 4 pi mu u at r of the force f spread over a stuck flat disc; m: unit normal into the body.
 [[nodiscard]] inline Vec3<double> disc_load(const Vec3<double>& r, const Vec3<double>& m, double depth,
                                             double radius, const Vec3<double>& f, double nu) noexcept {
