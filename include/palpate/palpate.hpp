@@ -65,6 +65,7 @@
 
 // one tick
 #include <palpate/solver/contact_solver.hpp>
+#include <palpate/solver/duffing_map.hpp>
 
 // out to the hand
 #include <palpate/device/gate.hpp>

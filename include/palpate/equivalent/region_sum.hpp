@@ -43,6 +43,12 @@ struct RegionSum {
     }
   }
 
+  /// Adds a force [N] that belongs to no point; `arm` [m]: from the centre of mass to where it acts.
+  void add(const Vec3<S>& arm, const Vec3<S>& f) noexcept {
+    force += f;
+    torque += arm.cross(f);
+  }
+
   /// Multiplies every force by `factor` [-].
   void scale(S factor) noexcept {
     force *= factor;
@@ -114,6 +120,9 @@ class LaneSum {
       sum_.place = Vec3<S>(x.x[i], x.y[i], x.z[i]);
     }
   }
+
+  /// Adds a force [N] at x [m] that belongs to no point.
+  void add(const Vec3<S>& x, const Vec3<S>& f) noexcept { sum_.add(Vec3<S>(x - centre_), f); }
 
   [[nodiscard]] RegionSum<S> total() const noexcept {
     RegionSum<S> sum = sum_;

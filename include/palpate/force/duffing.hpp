@@ -144,6 +144,15 @@ class DuffingForce {
   [[nodiscard]] S max_force() const noexcept { return max_force_; }
   [[nodiscard]] const Params& params() const noexcept { return p_; }
 
+ protected:
+  struct Known {};
+  /// Of parameters that are known to be good; where it softens, depth() has half the digits next to the fold.
+  DuffingForce(const Params& params, Known) noexcept : p_(params), cbrt_c3_(std::cbrt(params.c3)) {
+    if (!(p_.c3 < S(0))) return;
+    max_depth_ = std::sqrt(p_.c1 / (S(-3) * p_.c3));
+    max_force_ = S(2) / S(3) * p_.c1 * max_depth_;
+  }
+
  private:
   static DuffingForce fit(S k1, S k3, S depth, S force) {
     require_positive(depth, "DuffingForce fit", "depth [m] must be > 0 and finite");

@@ -13,11 +13,11 @@
 #include <palpate/detection/tool_points.hpp>
 #include <palpate/region/topology.hpp>
 #include <palpate/region/coupling.hpp>
-#include <palpate/force/concept.hpp>
 #include <palpate/friction/none.hpp>
 #include <palpate/equivalent/region_sum.hpp>
 #include <palpate/equivalent/anchor.hpp>
 #include <palpate/equivalent/contact_state.hpp>
+#include <palpate/solver/force_map.hpp>
 #include <palpate/solver/gather.hpp>
 // clang-format on
 
@@ -48,8 +48,8 @@ struct TickResult {
 ///
 /// | role       | parameter  | ships                                                               | default      |
 /// |------------|------------|---------------------------------------------------------------------|--------------|
-/// | object     | `Object`   | Sphere, Ellipsoid, Box, Cylinder, Superellipsoid                    |              |
-/// | force law  | `Force`    | DuffingForce, LinearForce, PowerLawForce, TabulatedForce, decorators |              |
+/// | object     | `Object`   | Sphere, Ellipsoid, Box, Cylinder, Superellipsoid, MeshSurface, SampledSurface, DeformedSurface | |
+/// | force law  | `Force`    | DuffingForce, LinearForce, PowerLawForce, TabulatedForce, decorators; DuffingMap | |
 /// | friction   | `Friction` | Frictionless, CoulombFriction, PowerLawFriction                     | Frictionless |
 /// | regions    | `Contacts` | SinglePoint, SingleRegion, Regions<N>                               | SinglePoint  |
 /// | wrench     | `Acting`   | AtContact, AtMassCentre                                             | AtContact    |
@@ -62,7 +62,7 @@ struct TickResult {
 /// same bits. From the third tick on at one pose the last result stands and nothing is worked out. A pose that is not
 /// finite or not a rotation gives the zero wrench and `Status::invalid_pose`; contact is forgotten and begins anew at the
 /// next usable pose.
-template <ContactSurface Object, ForceLaw Force, FrictionLaw Friction = Frictionless<typename Object::Scalar>,
+template <ContactSurface Object, ForceModel Force, FrictionLaw Friction = Frictionless<typename Object::Scalar>,
           Topology Contacts = SinglePoint, WrenchPolicy Acting = AtContact,
           RegionForceCoupling Coupling = IndependentRegions>
   requires std::same_as<typename Object::Scalar, typename Force::Scalar> &&
@@ -212,7 +212,7 @@ class ContactSolver {
         stuck.anchor = Anchor<S>::begin(X, contact.centre, normal, depth);
       }
       const AnchoredForce<S> held = advance<typename Friction::Slip, typename Friction::Skew>(
-          stuck.anchor, friction_, force_, X, normal, contact.centre, depth, normal_force);
+          stuck.anchor, friction_, detail::law_at(force_, contact.centre), X, normal, contact.centre, depth, normal_force);
       if (normal_force > S(0)) sum.scale(held.normal_force / normal_force);
       stuck.friction = held.friction;
       stuck.depth = depth;
@@ -255,7 +255,7 @@ class ContactSolver {
     if constexpr (std::same_as<Contacts, SinglePoint>) {
       return sum.deepest;
     } else {
-      return force_.depth(normal_force);
+      return detail::law_at(force_, sum.centre()).depth(normal_force);
     }
   }
 
@@ -299,13 +299,15 @@ class ContactSolver {
         normal += w * before.normal;
         weight += w;
         const S stretched = tangential<S>(before.tip - before.origin, before.normal).norm();
-        energy += fraction * before.slip.springs * Skew::energy(force_, last[p].depth, stretched);
+        energy += fraction * before.slip.springs *
+                  Skew::energy(detail::law_at(force_, before.tip), last[p].depth, stretched);
         strength = (std::max)(strength, before.slip.strength);
         sliding = sliding || before.slip.sliding;
       }
       Anchor<S>& anchor = stuck_[k].anchor;
+      const auto& law = detail::law_at(force_, sums[k].centre());
       const S normal_force = sums[k].force.norm();
-      const S depth = force_.depth(normal_force);
+      const S depth = law.depth(normal_force);
       if (!(weight > S(0))) {  // new, or from regions without force
         anchor = Anchor<S>::begin(X, sums[k].centre(), sums[k].normal(), depth);
         continue;
@@ -320,7 +322,7 @@ class ContactSolver {
       const S limit = sliding ? friction_.sliding_limit(normal_force) : friction_.static_limit(normal_force);
       if (limit > S(0)) strength = (std::max)(strength, (std::min)(held / limit, S(1) / (std::numeric_limits<S>::min)()));
       anchor.slip = {sliding, strength};
-      const S stretch = anchor.slip.template hold<Skew>(force_, depth, held, energy);
+      const S stretch = anchor.slip.template hold<Skew>(law, depth, held, energy);
       anchor.slip.slid = stretch;
       anchor.origin = anchor.tip + stretch * along + depth * anchor.normal;
     }

@@ -11,10 +11,10 @@
 #include <palpate/core/status.hpp>
 #include <palpate/detection/candidates.hpp>
 #include <palpate/equivalent/region_sum.hpp>
-#include <palpate/force/concept.hpp>
 #include <palpate/region/region_tracker.hpp>
 #include <palpate/region/slot.hpp>
 #include <palpate/region/topology.hpp>
+#include <palpate/solver/force_map.hpp>
 #include <palpate/surface/concept.hpp>
 
 #include <array>
@@ -25,7 +25,7 @@ namespace palpate {
 
 namespace detail {
 /// Status bits of a point at `depth` [m].
-template <ContactSurface Object, ForceLaw Force>
+template <ContactSurface Object, ForceModel Force>
 [[nodiscard]] inline Status depth_status(const Object& object, const Force& force,
                                          typename Object::Scalar depth) noexcept {
   Status status = Status::ok;
@@ -68,15 +68,35 @@ inline void for_each_touching_leaf(const ToolPoints<S>& tool, const Pose<S>& X, 
                           });
 }
 
-/// Adds to `sum` the points of a leaf that begins at `begin`, each with its share of the law's force.
-template <class Sharing, Real S, ForceLaw Force>
+template <Real S>
+[[nodiscard]] inline Vec3<S> mean(const PointLanes<S>& x) noexcept {
+  Vec3<S> sum = Vec3<S>::Zero();
+  for (std::size_t i = 0; i < x.x.size(); ++i) sum += Vec3<S>(x.x[i], x.y[i], x.z[i]);
+  return sum / static_cast<S>(x.x.size());
+}
+
+/// Adds to `sum` the points of a leaf that begins at `begin`, each with its share of the law's force. A map's law is that at
+/// the leaf's middle, a point of the tool.
+template <class Sharing, Real S, ForceModel Force>
 inline void add_leaf(const ToolPoints<S>& tool, const Force& force, std::uint32_t begin,
                      const PointLanes<S>& x, const PenetrationLanes<S>& in, LaneSum<S>& sum) noexcept {
   std::array<S, 8> f, area;
   for (std::size_t i = 0; i < f.size(); ++i) area[i] = tool.area((std::min)(begin + i, tool.size() - 1));
-  for (std::size_t i = 0; i < f.size(); ++i)
-    f[i] =
-        in.depth[i] > S(0) ? Sharing::weight(area[i], tool.contact_area()) * force.force(in.depth[i]) : S(0);
+  if constexpr (ForceMap<Force>) {
+    const Vec3<S> middle = mean(x);
+    const auto law = force.at(middle);
+    Vec3<S> configurational = Vec3<S>::Zero();
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      const S weight = Sharing::weight(area[i], tool.contact_area());
+      f[i] = weight * law.force(in.depth[i]);
+      configurational += weight * law.configurational_force(in.depth[i]);
+    }
+    sum.add(middle, configurational);
+  } else {
+    for (std::size_t i = 0; i < f.size(); ++i)
+      f[i] = in.depth[i] > S(0) ? Sharing::weight(area[i], tool.contact_area()) * force.force(in.depth[i])
+                                : S(0);
+  }
   sum.add(x, in, f, area);
 }
 }  // namespace detail
@@ -89,7 +109,7 @@ class Collector<SinglePoint, S> {
  public:
   Collector(const SinglePoint&, const PointTool<S>&) noexcept {}
 
-  template <ContactSurface Object, ForceLaw Force>
+  template <ContactSurface Object, ForceModel Force>
   Status collect(const Object& object, const PointTool<S>& tool, const Force& force, const Pose<S>& X,
                  std::array<RegionSum<S>, 1>& sums) noexcept {
     const Vec3<S> x = X * tool.tip;
@@ -97,8 +117,10 @@ class Collector<SinglePoint, S> {
     const bool touching = in.depth > S(0);
     slot_.update(touching);
     if (!touching) return Status::ok;
-    sums[0].add(x, X.rotation * (tool.tip - tool.centre_of_mass), in.gradient, in.depth,
-                force.force(in.depth), S(0));
+    const auto& law = detail::law_at(force, x);
+    const Vec3<S> arm = X.rotation * (tool.tip - tool.centre_of_mass);
+    sums[0].add(x, arm, in.gradient, in.depth, law.force(in.depth), S(0));
+    if constexpr (ForceMap<Force>) sums[0].add(arm, law.configurational_force(in.depth));
     return Status::contact | detail::depth_status(object, force, in.depth);
   }
   [[nodiscard]] const RegionSlot& slot(std::size_t) const noexcept { return slot_.slot(); }
@@ -114,7 +136,7 @@ class Collector<SingleRegion<Sharing>, S> {
  public:
   Collector(const SingleRegion<Sharing>&, const ToolPoints<S>&) noexcept {}
 
-  template <ContactSurface Object, ForceLaw Force>
+  template <ContactSurface Object, ForceModel Force>
   Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
                  std::array<RegionSum<S>, 1>& sums) noexcept {
     LaneSum<S> lanes(X * tool.centre_of_mass());
@@ -149,7 +171,7 @@ class Collector<Regions<N, Sharing>, S> {
         point_(tool.size()),
         place_(tool.size()) {}
 
-  template <ContactSurface Object, ForceLaw Force>
+  template <ContactSurface Object, ForceModel Force>
   Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
                  std::array<RegionSum<S>, N>& sums) noexcept {
     std::size_t leaves = 0, count = 0;
