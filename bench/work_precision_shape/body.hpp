@@ -4,6 +4,7 @@
 /// @file  The two reference bodies: data, tetrahedra that fit them, and how a shape is judged.
 
 #include <palpate/core/vector.hpp>
+#include <palpate/equivalent/contact_state.hpp>
 #include <palpate/surface/lattice_mesh.hpp>
 
 #include <algorithm>
@@ -75,6 +76,21 @@ inline Truth read_truth(const std::string& folder, const std::string& name) {
       t.displacement[d].push_back(1e-3 * V(v.at(5 + 3 * d), v.at(6 + 3 * d), v.at(7 + 3 * d)));
   });
   return t;
+}
+
+/// What the force half hands over: the patch, pushed straight down by d [m] with F [N].
+inline palpate::ContactState<double> pressed(const Truth& t, double d, double F) {
+  palpate::ContactState<double> contact{};
+  contact.id = contact.points = 1;
+  contact.mode = palpate::ContactMode::sticking;
+  contact.centre = t.top - d * V::UnitY();
+  contact.normal = V::UnitY();
+  contact.displacement = -d * V::UnitY();
+  contact.force = F * V::UnitY();
+  contact.friction = V::Zero();
+  contact.normal_force = F;
+  contact.area = std::numbers::pi * t.patch * t.patch;
+  return contact;
 }
 
 /// Relative errors of a shape at one depth: area weighted L2, the same beyond two patch radii, largest over largest.

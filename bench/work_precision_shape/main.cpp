@@ -88,21 +88,6 @@ DuffingForce<double> fitted_law(const Truth& t) {
   return DuffingForce<double>({.c1 = (b1 * a22 - b2 * a12) / det, .c3 = (a11 * b2 - a12 * b1) / det});
 }
 
-/// What the force half hands over: the patch, pushed straight down by d [m] with F [N].
-ContactState<double> pressed(const Truth& t, double d, double F) {
-  ContactState<double> contact{};
-  contact.id = contact.points = 1;
-  contact.mode = ContactMode::sticking;
-  contact.centre = t.top - d * V::UnitY();
-  contact.normal = V::UnitY();
-  contact.displacement = -d * V::UnitY();
-  contact.force = F * V::UnitY();
-  contact.friction = V::Zero();
-  contact.normal_force = F;
-  contact.area = std::numbers::pi * t.patch * t.patch;
-  return contact;
-}
-
 void no_deformation(const Table& table) {
   const DuffingForce<double> law = fitted_law(table.truth);
   const std::vector<V> still(table.truth.rest.size(), V::Zero());
