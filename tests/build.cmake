@@ -6,6 +6,9 @@ get_property(tests_of_code DIRECTORY PROPERTY TESTS)
 file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/include
   ${PROJECT_SOURCE_DIR}/include/palpate/*.hpp)
 list(SORT headers)
+set(adapters ${headers})  # need another library
+list(FILTER adapters INCLUDE REGEX "^palpate/adapters/")
+list(FILTER headers EXCLUDE REGEX "^palpate/adapters/")
 set(include_all "")
 foreach(header IN LISTS headers)
   string(APPEND include_all "#include <${header}>\n")
@@ -15,6 +18,14 @@ file(CONFIGURE OUTPUT ${generated}/all_headers.hpp CONTENT "#pragma once\n${incl
 
 # Each header alone, in a file of its own. Force laws stay free of Eigen, which is most of a user's compile time.
 set(sources "")
+set(adapter_libraries "")
+foreach(adapter IN LISTS adapters)
+  get_filename_component(name ${adapter} NAME_WE)
+  if(TARGET palpate_adapter_${name})
+    list(APPEND headers ${adapter})
+    list(APPEND adapter_libraries palpate_adapter_${name})
+  endif()
+endforeach()
 foreach(header IN LISTS headers)
   string(REGEX REPLACE "[/.]" "_" name ${header})
   set(text "#include <${header}>\n")
@@ -29,6 +40,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_library(palpate_test_headers OBJECT ${sources})
   palpate_own_target(palpate_test_headers)
   target_compile_options(palpate_test_headers PRIVATE -O0)
+  target_link_libraries(palpate_test_headers PRIVATE ${adapter_libraries})
 endif()
 
 # Two objects of one program.

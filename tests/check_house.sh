@@ -6,7 +6,7 @@ set -eu
 cd "$1"
 
 # Reading order of the folders; each includes only those before it and itself.
-layers="core material surface detection region force friction equivalent beam interpolation response deformation solver device calibrate"
+layers="core material surface detection region force friction equivalent beam interpolation response deformation solver device calibrate adapters"
 
 version=$(awk '$2 ~ /^PALPATE_VERSION_(MAJOR|MINOR|PATCH)$/ { v = v "." $3 } END { print substr(v, 2) }' \
   include/palpate/version.hpp)

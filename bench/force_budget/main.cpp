@@ -15,6 +15,7 @@
 
 #include <palpate/beam/regions.hpp>
 #include <palpate/surface/mesh_surface.hpp>
+#include <palpate/surface/sampled_surface.hpp>
 
 #include <functional>
 #include <memory>
@@ -179,9 +180,9 @@ struct Bench {
     body<S>("sphere", Sphere<S>({.radius = S(0.05)}), 0.05);
     body<S>("box", Box<S>({.half = Vec3<S>(S(0.06), S(0.04), S(0.04))}), 0.04);
     body<S>("cylinder", Cylinder<S>({.radius = S(0.05), .half_height = S(0.04)}), 0.04);
-    body<S>("superellipsoid",
-            Superellipsoid<S>({.axes = Vec3<S>(S(0.06), S(0.04), S(0.04)), .e1 = S(0.5), .e2 = S(0.5)}),
-            0.04);
+    const Superellipsoid<S> pill({.axes = Vec3<S>(S(0.06), S(0.04), S(0.04)), .e1 = S(0.5), .e2 = S(0.5)});
+    body<S>("superellipsoid", pill, 0.04);
+    body<S>("superellipsoid sampled", SampledSurface<Superellipsoid<S>>(pill, {.spacing = S(2e-3)}), 0.04);
     const MeshSurface<S> mesh(TriangleMesh<S>(ellipsoid<S>().mesh(2000)));
     add<ContactSolver<MeshSurface<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<8>>>(
         "mesh duffing fibre regions<8>", 100, 0.04, {mesh, face<S>(100, 1), law, fibre<S>(), {joining}});

@@ -302,11 +302,11 @@ void closest_point(const Table& table, const char* problem, double least, double
     const double ns = least_ns(table.repeats, [&] {
       PointLanes<S> at;
       PenetrationLanes<S> in;
-      for (std::size_t i = 0; i < count; i += 8) {
-        for (std::size_t l = 0; l < 8; ++l)
+      for (std::size_t i = 0; i < count; i += lane_count) {
+        for (std::size_t l = 0; l < lane_count; ++l)
           at.x[l] = x[i + l].x(), at.y[l] = x[i + l].y(), at.z[l] = x[i + l].z();
         surface.penetration(at, in);
-        for (std::size_t l = 0; l < 8; ++l)
+        for (std::size_t l = 0; l < lane_count; ++l)
           p[i + l] = x[i + l] + in.depth[l] * Vec3<S>(in.gradient_x[l], in.gradient_y[l], in.gradient_z[l]);
       }
       use(p[0]);
@@ -314,7 +314,7 @@ void closest_point(const Table& table, const char* problem, double least, double
     double error = 0;
     for (std::size_t i = 0; i < count; ++i)
       error = (std::max)(error, double((p[i].template cast<Long>() - truth[i]).norm() / exact.a[0]));
-    table.row(problem, "palpate penetration eight at a time", scalar_name<S>, "inside", ns / double(count),
+    table.row(problem, "palpate penetration sixteen at a time", scalar_name<S>, "inside", ns / double(count),
               error, reference, 16 * epsilon);
   }
   for (const int n : {1, 2, 3, 4, 6, 8, 12})

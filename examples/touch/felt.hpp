@@ -4,7 +4,11 @@
 /// @file  What the servo thread does in a tick and what it hands over: the solver, and the sums over its regions.
 
 #include <palpate/beam/regions.hpp>
+#include <palpate/detection/swept_pose.hpp>
+#include <palpate/device/energy_limit.hpp>
 #include <palpate/palpate.hpp>
+
+#include <optional>
 
 #include "tools.hpp"
 
@@ -15,6 +19,7 @@ inline constexpr std::size_t most_regions = 4;
 /// What the example keeps of a tick: plain values, so that another thread may have them.
 struct Felt {
   palpate::Wrench<S> wrench;
+  palpate::Pose<S> pose;  ///< where the tool was felt: the device's pose, or where it was held back
   palpate::Status status = palpate::Status::ok;
   std::uint32_t regions = 0;
   bool sliding = false;
@@ -23,16 +28,28 @@ struct Felt {
   palpate::FixedVector<palpate::ContactState<S>, most_regions> contacts;  ///< what the shape is made of
 };
 
+/// The object stays the undeformed one.
+struct FollowNothing {
+  template <class Solver>
+  void operator()(const Felt&, Solver&) const noexcept {}
+};
+
 /// The solver as the device calls it.
-template <class Solver>
+template <class Solver, class Follow = FollowNothing>
 struct Feel {
   Solver solver;
+  std::optional<palpate::SweptPose<S>> sweep{};  ///< holds the tool back; empty: never
+  std::optional<palpate::EnergyLimit<S>> limit{};  ///< for an object whose force is not passive by itself
+  Follow follow{};                               ///< what the object does after a tick, for the next one
 
   Felt tick(const palpate::Pose<S>& X, S dt) noexcept {
-    const palpate::TickResult<S> result = solver.tick(X, dt);
+    palpate::HeldPose<S> at{X, palpate::Status::ok};
+    if (sweep) at = sweep->advance(solver.tool(), solver.object(), X);
+    const palpate::TickResult<S> result = solver.tick(at.pose, dt);
     Felt felt;
-    felt.wrench = result.wrench;
-    felt.status = result.status;
+    felt.wrench = limit ? limit->pass(result.wrench, X, solver.contacts()) : result.wrench;
+    felt.pose = at.pose;
+    felt.status = result.status | at.status;
     for (const palpate::ContactState<S>& contact : solver.contacts()) {
       ++felt.regions;
       felt.sliding = felt.sliding || contact.mode == palpate::ContactMode::sliding;
@@ -40,24 +57,29 @@ struct Feel {
       felt.normal += contact.force - contact.friction;
       felt.contacts.push_back(contact);
     }
+    follow(felt, solver);
     return felt;
   }
-  void reset() noexcept { solver.reset(); }
+  void reset() noexcept {
+    solver.reset();
+    if (sweep) sweep->reset();
+    if (limit) limit->reset();
+  }
 };
 
 /// The example's solver over any body.
-template <class Body, class Coupling = palpate::IndependentRegions>
-using Contact = palpate::ContactSolver<Body, palpate::DuffingForce<S>, palpate::PowerLawFriction<S>,
-                                       palpate::Regions<most_regions>, palpate::AtContact, Coupling>;
+template <class Body, class Coupling = palpate::IndependentRegions, class Force = palpate::DuffingForce<S>>
+using Contact = palpate::ContactSolver<Body, Force, palpate::PowerLawFriction<S>, palpate::Regions<most_regions>,
+                                       palpate::AtContact, Coupling>;
 
 /// The paper's parameters (section VII): lengths in mm, m = 1 kg, and K = 10 read in dyn.
 inline const palpate::DuffingForce<S> paper_force({.c1 = 40, .c3 = 3e8});
 
-template <class Body, class Coupling = palpate::IndependentRegions>
-[[nodiscard]] Contact<Body, Coupling> make_contact(const Body& body, const Tool& tool,
-                                                   const palpate::DuffingForce<S>& force, const Coupling& coupling = {}) {
+template <class Body, class Force, class Coupling = palpate::IndependentRegions>
+[[nodiscard]] Contact<Body, Coupling, Force> make_contact(const Body& body, const Tool& tool, const Force& force,
+                                                          const Coupling& coupling = {}) {
   using namespace palpate;
-  return Contact<Body, Coupling>({
+  return Contact<Body, Coupling, Force>({
       .object = body,
       .tool = ToolPoints<S>(TriangleMesh<S>(tool.mesh),
                             {.contact_area = tool.contact_area, .centre_of_mass = tool.centre_of_mass}, tool.spacing),

@@ -10,6 +10,8 @@
 
 #include <palpate/surface/mesh_surface.hpp>
 
+#include <exception>
+
 namespace touch {
 
 using namespace palpate;
@@ -44,6 +46,7 @@ int run_file(const Options& options) {
   const MeshSurface<S> body{TriangleMesh<S>(mesh)};
   std::printf("%s: %zu vertices, %zu triangles, %.0f x %.0f x %.0f mm\n", options.object.c_str(), mesh.vertices.size(),
               mesh.triangles.size(), size.x(), size.y(), size.z());
+  if (!(size.maxCoeff() > 10 && size.maxCoeff() < 1000)) std::printf("note           the tools are 3 to 60 mm wide: is --scale right?\n");
   return run(options, body, std::move(mesh), "half-space");
 }
 
@@ -65,7 +68,7 @@ int main(int argc, char** argv) {
     if (options.object == "superellipsoid") return run(options, Superellipsoid<S>({.axes = V(0.06, 0.04, 0.05)}));
     if (is_mesh_file(options.object)) return run_file(options);
     refuse("unknown object " + options.object);
-  } catch (const palpate::SetupError& error) {
+  } catch (const std::exception& error) {
     std::fprintf(stderr, "palpate_touch: %s\n", error.what());
     return 1;
   }

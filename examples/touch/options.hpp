@@ -21,6 +21,8 @@ struct Options {
   double scale = 1;     ///< of mesh files
   char up = 'y';        ///< of mesh files
   bool repair = false;  ///< of mesh files
+  bool deformed = false;  ///< contact is looked for on the shape as it is now, not on the undeformed one
+  double sweep = 0;     ///< how deep a point may get on its way [m]; 0: as deep as it is taken
   double at_x = 0, at_z = 0;  ///< where the scripts work [m]
   double rate = 1000;   ///< [Hz]
   bool stepped = false;
@@ -39,9 +41,14 @@ inline constexpr const char* usage =
   --scale S       metres per unit of the files (default 1)
   --up AXIS       the files' axis that points up: x, y (default) or z
   --repair        weld, turn and drop in the files what is plainly wrong, and say so
-  --script NAME   figure10 (default), press, slide
-  --at X Z        where press and slide work, in metres from the object's middle (default 0 0)
-  --shape MODEL   how the object deforms: skeleton, half-space, response, or none. Default: skeleton; of files half-space
+  --script NAME   figure10 (default), press, slide, both: press with both pins of the compass
+  --at X Z        where press, slide and both work, in metres from the object's middle (default 0 0)
+  --shape MODEL   how the object deforms: skeleton, half-space, response, or none. Default: skeleton; of files half-space.
+                  With response the force is the field's too, that of a soft rubber; else the law of the paper
+  --detect WHERE  undeformed (default): contact is found on the object's shape at rest; deformed: on the shape of the
+                  last tick, worked out in the servo loop; for mesh files
+  --sweep DEPTH   a fast tool is held where a point of it would get deeper than DEPTH, in metres, so that it does not pass
+                  through thin parts: at most 0.4 of the thinnest. Held, it does not slide. Default: not held
   --rate HZ       servo rate asked of the device (default 1000)
   --stepped       simulated time instead of real time: same bits in every run (stand-in device only)
   --out FOLDER    where the results go (default out)
@@ -52,7 +59,7 @@ inline constexpr const char* usage =
 )";
 
 [[noreturn]] inline void refuse(const std::string& why) {
-  std::fprintf(stderr, "palpate_touch: %s\n%s", why.c_str(), usage);
+  std::fprintf(stderr, "palpate_touch: %s; --help lists the options\n", why.c_str());
   std::exit(2);
 }
 
@@ -78,6 +85,10 @@ inline Options parse(int argc, char** argv) {
       if (end == text.c_str() || *end != '\0' || !(x > -1e3 && x < 1e3)) refuse(name + " needs two numbers, got " + text);
       return x;
     };
+    const auto where = [&](const std::string& text) {
+      if (text != "deformed" && text != "undeformed") refuse(name + " needs deformed or undeformed, got " + text);
+      return text == "deformed";
+    };
     const auto axis = [&](const std::string& text) {
       if (text != "x" && text != "y" && text != "z") refuse(name + " needs x, y or z, got " + text);
       return text.front();
@@ -87,6 +98,8 @@ inline Options parse(int argc, char** argv) {
     else if (name == "--shape") options.shape = value();
     else if (name == "--up") options.up = axis(value());
     else if (name == "--repair") options.repair = true;
+    else if (name == "--detect") options.deformed = where(value());
+    else if (name == "--sweep") options.sweep = number();
     else if (name == "--script") options.script = value();
     else if (name == "--at") options.at_x = place(), options.at_z = place();
     else if (name == "--out") options.out = value();

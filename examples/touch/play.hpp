@@ -3,6 +3,7 @@
 
 /// @file  One scene played: felt on the device, its shape drawn beside the servo loop, and all of it written down.
 
+#include <palpate/calibrate/response_map.hpp>
 #include <palpate/surface/mesh_surface.hpp>
 #include <palpate/surface/sampled_surface.hpp>
 
@@ -37,6 +38,19 @@ template <class Body>
   return {body, {.spacing = 0.01 * (body.upper() - body.lower()).norm()}};
 }
 
+/// What the hand feels of the body that a response field describes: its force under the tool's contact area, fitted down to two
+/// radii.
+template <class Body>
+[[nodiscard]] palpate::DuffingMap<S> field_force(const palpate::ResponseField& field, const Body& body, const Tool& tool) {
+  const S radius = std::sqrt(tool.contact_area / std::numbers::pi_v<S>);
+  auto fitted = palpate::response_map(
+      field, body, palpate::ResponseMapParams<S>{.radius = radius, .depth = 2 * radius, .spacing = field.mesh().length / 2});
+  const auto law = fitted.map.at(body.raycast(V(0, 1, 0), -V::UnitY()).position).params();
+  std::printf("force          of the field: c1 %.0f N/m, c3 %.2g N/m^3 on top, fits within %.1f %%\n", law.c1, law.c3,
+              100 * fitted.worst_rms);
+  return std::move(fitted.map);
+}
+
 /// One line per region and tick in contact. Without a shape w is 1.
 template <class Device>
 void write_contacts(const std::string& file, const Device& device, const Shape* shape) {
@@ -47,7 +61,7 @@ void write_contacts(const std::string& file, const Device& device, const Shape* 
     for (std::size_t j = 0; j < r.result.contacts.size(); ++j) {
       const palpate::ContactState<S>& c = r.result.contacts[j];
       const S w = shape != nullptr ? shape->factor(c) : 1, D = c.displacement.norm();
-      csv << r.t << ',' << c.id << ',' << r.pose.to_tool(c.centre).x() << ',' << c.force.x() << ',' << c.force.y() << ','
+      csv << r.t << ',' << c.id << ',' << r.result.pose.to_tool(c.centre).x() << ',' << c.force.x() << ',' << c.force.y() << ','
           << c.force.z() << ',' << c.force.norm() << ',' << D << ',' << c.area << ',' << w << ',' << w * D << '\n';
     }
   }
@@ -77,9 +91,10 @@ int play(Options options, const Scene<Body, Coupling>& scene) {
   const Tool tool = make_tool(options);
   const Script script = scene.script(options, scene.body, tool);
   const auto& object = felt_object(scene.body);
-  Feel<Contact<std::remove_cvref_t<decltype(object)>, Coupling>> feel{make_contact(object, tool, scene.force, scene.coupling)};
   std::optional<Shape> shape;
   if (options.shape != "none") shape.emplace(make_shape(options.shape, scene.body, scene.display));
+  std::optional<palpate::SweptPose<S>> sweep;
+  if (options.sweep > 0) sweep.emplace(options.sweep);
 
   // Frames from first contact on, at even distances of the updates.
   constexpr double begin = 1.0;
@@ -89,10 +104,10 @@ int play(Options options, const Scene<Body, Coupling>& scene) {
   const auto update = [&](const auto& record) {
     if (!shape) return;
     shape->update(record.result);
-    if (record.t >= begin && updates++ % stride == 0) frames.push_back(shape->frame(record.t, record.pose, record.result));
+    if (record.t >= begin && updates++ % stride == 0) frames.push_back(shape->frame(record.t, record.result));
   };
   const V top = scene.body.raycast(V(0, 1, 0), -V::UnitY()).position;
-  return perform(options, feel, tool, script, top, scene.title, update, [&](const auto& device) {
+  const auto finish = [&](const auto& device) {
     print_steps(device);
     write_contacts(options.out + "/contacts.csv", device, shape ? &*shape : nullptr);
     if (!shape) return;
@@ -101,7 +116,32 @@ int play(Options options, const Scene<Body, Coupling>& scene) {
     write_series(options.out, "shape", shape->rest(), frames);
     Pictures(options.out + "/frames", scene.view, shape->rest(), tool).write(scene.title, frames);
     std::printf("wrote          %s/shape.pvd, %zu frames\n", options.out.c_str(), frames.size());
-  });
+  };
+
+  using Object = std::remove_cvref_t<decltype(object)>;
+  const auto felt_with = [&](const auto& force) {
+    using Force = std::remove_cvref_t<decltype(force)>;
+    if constexpr (std::same_as<Body, palpate::MeshSurface<S>>) {
+      if (options.deformed) {
+        if (!shape) refuse("--detect deformed needs a shape");
+        using Now = palpate::DeformedSurface<Object>;
+        Feel<Contact<Now, Coupling, Force>, FollowShape> feel{
+            make_contact(Now(object, palpate::TriangleMesh<S>(scene.display)), tool, force, scene.coupling), sweep,
+            palpate::EnergyLimit<S>({.centre_of_mass = tool.centre_of_mass, .contact_area = tool.contact_area}),
+            FollowShape(*shape)};
+        return perform(options, feel, tool, script, top, scene.title, update, [&](const auto& device) {
+          std::printf("detection      on the deformed shape, bulges up to %.3f mm\n", 1e3 * feel.follow.highest);
+          finish(device);
+        });
+      }
+    }
+    if (options.deformed) refuse("--detect deformed is for mesh files");
+    Feel<Contact<Object, Coupling, Force>> feel{make_contact(object, tool, force, scene.coupling), sweep, {}, {}};
+    return perform(options, feel, tool, script, top, scene.title, update, finish);
+  };
+  if (!shape || !shape->field) return felt_with(scene.force);
+  const auto fitted = field_force(*shape->field, scene.body, tool);
+  return felt_with(fitted);
 }
 
 }  // namespace touch

@@ -149,8 +149,8 @@ class Pictures {
       std::fprintf(out, ",\n<%.4f,0>", std::clamp(u, 0.0001, 0.9999));  // the gradient repeats at 1
     }
     std::fputs("}\nBodyFaces()\ntexture{Body}}\nobject{Tool matrix", out);
-    const palpate::Mat3<S>& R = frame.pose.rotation;
-    const V p = 1e3 * frame.pose.translation;
+    const palpate::Mat3<S>& R = frame.felt.pose.rotation;
+    const V p = 1e3 * frame.felt.pose.translation;
     std::fprintf(out, "<%.6f,%.6f,%.6f, %.6f,%.6f,%.6f, %.6f,%.6f,%.6f, %.4f,%.4f,%.4f>}\n", R(0, 0), R(1, 0), R(2, 0), R(0, 1),
                  R(1, 1), R(2, 1), R(0, 2), R(1, 2), R(2, 2), p.x(), p.y(), p.z());
     for (std::size_t j = 0; j < frame.felt.contacts.size(); ++j) {

@@ -79,6 +79,25 @@ Script make_script(const Options& options, const Body& body, const palpate::Mesh
               return over(options.at_x, options.at_z, hover - (hover + press * (0.4 + 0.2 * std::floor(s / 1.2))) * wave);
             });
   }
+  if (options.script == "both") {  // in and out once, tilted so that both pins of the compass touch at once
+    if (options.tool != "compass") refuse("--script both needs --tool compass");
+    const auto top = [&](double x) { return below(x, options.at_z); };
+    double tilt = 0, begin = 0;
+    palpate::RayHit<double> one;
+    for (int i = 0; i < 20; ++i) {  // until the line between the feet lies along the tool
+      begin = options.at_x - 0.5 * compass_width * std::cos(tilt);
+      one = top(begin);
+      const palpate::RayHit<double> two = top(begin + compass_width * std::cos(tilt));
+      if (!one.hit || !two.hit) refuse("--script both: a pin of the compass is beside the object; move it with --at");
+      tilt = 0.5 * (tilt + std::asin(std::clamp((two.position.y() - one.position.y()) / compass_width, -1.0, 1.0)));
+    }
+    Script script = table(4.4, [=](double t) -> V {
+      const double down = smooth_step(t, free, free + 1.2) - smooth_step(t, 3.0, 4.2);
+      return one.position + V(0, hover - (hover + press) * down, 0);
+    });
+    script.turn = [tilt](double) { return palpate::Mat3<double>(Eigen::AngleAxisd(tilt, V::UnitZ())); };
+    return script;
+  }
   if (options.script == "slide") {  // to and fro across the top
     return table(8.0, [=](double t) {
               const double down = smooth_step(t, free, free + 0.6) - smooth_step(t, 7.2, 7.8);

@@ -48,19 +48,23 @@ template <class Device>
 void print_summary(const Device& device) {
   const auto& s = device.statistics();
   double peak = 0;
-  std::size_t contact = 0, sliding = 0, gaps = 0;
+  std::size_t contact = 0, sliding = 0, gaps = 0, held = 0;
   for (std::size_t i = 0; i < device.recorded(); ++i) {
     const auto& felt = device.recording()[i].result;
     peak = (std::max)(peak, felt.wrench.force.norm());
     contact += felt.regions > 0;
     sliding += felt.sliding;
+    held += has(felt.status, palpate::Status::held_back);
     gaps += has(device.recording()[i].gate, palpate::GateStatus::gap);
   }
   const auto us = [&](double q) { return 1e-3 * static_cast<double>(s.tick_time.quantile(q)); };
   const double share = contact > 0 ? 100.0 * static_cast<double>(sliding) / static_cast<double>(contact) : 0;
   std::printf("rate reached   %.0f Hz over %.2f s, %llu ticks\n", s.rate(), 1e-9 * static_cast<double>(s.span),
               static_cast<unsigned long long>(s.ticks));
-  std::printf("tick time      p50 %.2f us, p99 %.2f us, p99.9 %.2f us, max %.2f us (callback, with the device's calls)\n",
+  if (s.tick_time.max() == 0)
+    std::printf("tick time      none in simulated time: leave out --stepped to measure it\n");
+  else
+    std::printf("tick time      p50 %.2f us, p99 %.2f us, p99.9 %.2f us, max %.2f us (callback, with the device's calls)\n",
               us(0.5), us(0.99), us(0.999), 1e-3 * static_cast<double>(s.tick_time.max()));
   std::printf("overruns       %llu\n", static_cast<unsigned long long>(s.overruns));
   if (gaps > 0) {
@@ -69,6 +73,7 @@ void print_summary(const Device& device) {
   }
   std::printf("peak force     %.2f N\n", peak);
   std::printf("in contact     %zu ticks: %.0f %% stick, %.0f %% slip\n", contact, 100 - share, share);
+  if (held > 0) std::printf("held back      %zu ticks\n", held);
 }
 
 /// Is the output a terminal, so that a progress line can be written over and over?

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  The shape beside the servo loop: contacts from the triple buffer to the vertices of a display mesh by a
-/// deformation model, and the frames that are kept of it.
+/// @file  The shape: contacts to the vertices of a display mesh by a deformation model, beside the servo loop for the
+/// pictures and within it for detection against the shape as it is now; and the frames that are kept of it.
 
 #include <palpate/deformation/beam_skeleton.hpp>
 #include <palpate/deformation/half_space.hpp>
 #include <palpate/deformation/response_field.hpp>
+#include <palpate/detection/deformed_surface.hpp>
 #include <palpate/interpolation/phong.hpp>
 #include <palpate/surface/mesh_extremal_points.hpp>
 
@@ -21,8 +22,7 @@ namespace touch {
 
 /// One kept moment.
 struct Frame {
-  double t;               ///< [s]
-  palpate::Pose<S> pose;  ///< of the tool
+  double t;  ///< [s]
   Felt felt;
   std::vector<V> position, normal;  ///< of the display mesh's vertices [m], [-]
 
@@ -51,7 +51,7 @@ template <class Body>
   return body.raycast(V(middle.x(), body.lower().y() - 1, middle.z()), V::UnitY()).position;
 }
 
-/// A display mesh that a deformation model moves; the model's type is forgotten here.
+/// A display mesh that a deformation model moves; the model's type is forgotten here. A copy is a shape of its own.
 class Shape {
  public:
   using Contacts = std::span<const palpate::ContactState<S>>;
@@ -62,22 +62,30 @@ class Shape {
         position_(mesh_.vertices.size()),
         normal_(mesh_.vertices.size()),
         neighbourhood_(std::move(neighbourhood)) {
-    const auto kept = std::make_shared<Model>(std::move(model));
-    kept->write_rest(buffer());
-    write_ = [kept](Contacts contacts, const Buffer& out) { return kept->write(contacts, out).vertices; };
+    model.write_rest(buffer());
+    write_ = [model = std::move(model)](Contacts contacts, const Buffer& out) mutable {
+      return model.write(contacts, out).vertices;
+    };
   }
 
-  /// Takes over the newest contacts.
-  void update(const Felt& felt) {
+  /// What the shape was worked out with, where it was: a force can be had from it too.
+  std::shared_ptr<const palpate::ResponseField> field;
+
+  /// Takes over the newest contacts. False: nothing moved. No heap, no locks: a servo loop may call it.
+  bool update(const Felt& felt) noexcept {
     const auto begin = std::chrono::steady_clock::now();
     const std::size_t moved = write_(Contacts(felt.contacts.begin(), felt.contacts.size()), buffer());
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
-    if (moved == 0) return;
+    if (moved == 0) return false;
     seconds_ += spent.count();
     ++updates_;
+    return true;
   }
-  [[nodiscard]] Frame frame(double t, const palpate::Pose<S>& pose, const Felt& felt) const {
-    return {t, pose, felt, position_, normal_};
+  [[nodiscard]] std::span<const V> positions() const noexcept { return position_; }
+  /// From now on only places are written, for those who do not draw it.
+  void drop_normals() noexcept { with_normals_ = false; }
+  [[nodiscard]] Frame frame(double t, const Felt& felt) const {
+    return {t, felt, position_, normal_};
   }
 
   [[nodiscard]] const palpate::MeshData<S>& rest() const noexcept { return mesh_; }
@@ -96,7 +104,7 @@ class Shape {
   [[nodiscard]] Buffer buffer() noexcept {
     return {.positions = position_.front().data(),
             .position_stride = sizeof(V),
-            .normals = normal_.front().data(),
+            .normals = with_normals_ ? normal_.front().data() : nullptr,
             .normal_stride = sizeof(V)};
   }
 
@@ -104,8 +112,24 @@ class Shape {
   std::vector<V> position_, normal_;
   std::optional<palpate::AreaNeighbourhood<S>> neighbourhood_;
   std::function<std::size_t(Contacts, const Buffer&)> write_;
+  bool with_normals_ = true;
   double seconds_ = 0;
   std::size_t updates_ = 0;
+};
+
+/// After each tick a DeformedSurface takes the shape of that tick.
+struct FollowShape {
+  Shape shape;
+  S highest = 0;  ///< bulge so far [m]
+
+  explicit FollowShape(const Shape& drawn) : shape(drawn) { shape.drop_normals(); }
+  template <class Solver>
+  void operator()(const Felt& felt, Solver& solver) noexcept {
+    if (!shape.update(felt)) return;
+    auto& object = solver.mutable_object();
+    object.update(shape.positions());
+    highest = (std::max)(highest, object.highest_bulge());
+  }
 };
 
 /// The paper's model: skeleton, released ends, interpolation.
@@ -142,7 +166,9 @@ template <class Body>
                                        }});
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
     std::printf("\rresponse field of %zu solve vertices in %.1f s\n", field->mesh().vertices.size(), spent.count());
-    return Shape(mesh, palpate::ResponseFieldDeformation<S, most_regions>(field, mesh));
+    Shape shape(mesh, palpate::ResponseFieldDeformation<S, most_regions>(field, mesh));
+    shape.field = field;
+    return shape;
   }
   refuse("unknown shape " + model + " (skeleton, half-space, response, none)");
 }

@@ -35,6 +35,8 @@ inline palpate::MeshData<S> standing(palpate::MeshData<S> mesh) {
   return mesh;
 }
 
+inline constexpr S compass_width = 36e-3;  ///< from pin to pin [m]
+
 /// Spheres side by side as one mesh.
 inline palpate::MeshData<S> spheres(const std::vector<V>& centres, S radius, std::size_t vertices) {
   palpate::MeshData<S> all;
@@ -69,8 +71,8 @@ inline Tool make_tool(const Options& options) {
                      {{V(0, 20e-3, 0), V(0, 80e-3, 0), 7e-3}, {V(-20e-3, 95e-3, 0), V(20e-3, 95e-3, 0), 30e-3}});
   }
   if (name == "compass") {  // two pins 36 mm apart; the origin is the tip of the one at -x
-    constexpr S radius = 2e-3, apart = 36e-3;
-    const V one(0, radius, 0), two(apart, radius, 0), hinge(apart / 2, 60e-3, 0);
+    constexpr S radius = 2e-3;
+    const V one(0, radius, 0), two(compass_width, radius, 0), hinge(compass_width / 2, 60e-3, 0);
     return {spheres({one, two}, radius, 400),
             5e-5,  // a whole pin's surface: it can sink in
             0.25e-3,

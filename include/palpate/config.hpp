@@ -39,7 +39,16 @@
 
 // Everything called in this function becomes part of it at any level of optimisation: for loops over vector registers,
 // whose every operation is a function of Eigen's.
-#if defined(__GNUC__)
+// Not without optimisation or under a sanitizer, where it only makes the compilation long.
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#define PALPATE_FLATTEN
+#endif
+#endif
+#if defined(PALPATE_FLATTEN)
+#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define PALPATE_FLATTEN
+#elif defined(__GNUC__) && defined(__OPTIMIZE__)
 #define PALPATE_FLATTEN [[gnu::flatten]]
 #else
 #define PALPATE_FLATTEN

@@ -68,6 +68,7 @@
 #include <palpate/solver/duffing_map.hpp>
 
 // out to the hand
+#include <palpate/device/energy_limit.hpp>
 #include <palpate/device/gate.hpp>
 #include <palpate/device/servo_statistics.hpp>
 #include <palpate/device/spsc_ring.hpp>

@@ -15,35 +15,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <set>
 
 using namespace palpate;
 
 namespace {
 
 using Mesh = MeshData<float>;
-
-// Every directed edge once, its reverse once, every vertex used and finite, and the right sign of the volume.
-bool is_sound(const Mesh& mesh) {
-  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
-  std::vector<bool> used(mesh.vertices.size(), false);
-  double volume = 0;
-  for (const auto& t : mesh.triangles) {
-    std::array<Vec3<double>, 3> p;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (t[k] >= mesh.vertices.size() || !edges.insert({t[k], t[(k + 1) % 3]}).second) return false;
-      used[t[k]] = true;
-      p[k] = mesh.vertices[t[k]].cast<double>();
-      if (!is_finite(p[k])) return false;
-    }
-    volume += p[0].dot(p[1].cross(p[2]));
-  }
-  for (const auto& [a, b] : edges)
-    if (a == b || edges.count({b, a}) == 0) return false;
-  for (const bool u : used)
-    if (!u) return false;
-  return volume > 0 && !mesh.triangles.empty();
-}
 
 Mesh random_buffer(std::mt19937_64& random) {
   Mesh mesh;
@@ -135,7 +112,7 @@ TEST_CASE("stress: random and mutated vertex buffers never get through as valid"
     }
     if (!report.valid()) continue;
     ++passed;
-    unsound += !is_sound(mesh);
+    unsound += !test::is_sound(mesh);
     // What passes can be used: every query gives a finite answer.
     if (passed % 16 != 0) continue;
     const MeshSurface<float> body{TriangleMesh<float>(mesh)};

@@ -84,8 +84,8 @@ struct Body {
   MeshData<double> mesh;
   double held_below;  // y [m]
   double nu;
-  double jump;         // bound of the largest jump of a force, in half-space forces
   double convergence;  // bound of the median change of force between the two solve meshes
+  double jump = 0.1;   // bound of the largest jump of a force, in half-space forces, and of the field, in d
 };
 
 // A probe that is kept at a small distance outside; its nearest point of the surface and the direction from there are
@@ -142,14 +142,29 @@ void try_body(const Body& body) {
   std::vector<double> u(3 * points.size()), before(u.size()), change;
   double force_jump = 0, field_jump = 0, most = 0, most_linear = 0, stiffest = 0;
   const int paths = 5, steps = 2000;
-  std::array<ResponseContact<double>, 4> steepest;
-  std::size_t steep_count = 0;
-  double steep_moved = 0;
+  using Both = std::array<ResponseContact<double>, 2>;
+  const auto middle = [](const Both& l, const Both& r) {
+    Both m = l;
+    for (std::size_t c = 0; c < 2; ++c) {
+      m[c].place = 0.5 * (l[c].place + r[c].place);
+      m[c].normal = (l[c].normal + r[c].normal).normalized();
+      m[c].displacement = 0.5 * (l[c].displacement + r[c].displacement);
+    }
+    return m;
+  };
+  // What is left of the change from l to r in the steepest 16,384th of the way: a jump keeps all of it.
+  const auto left_over = [&](Both l, Both r, const auto& apart_by) {
+    for (int i = 0; i < 14; ++i) {
+      const Both m = middle(l, r);
+      (apart_by(l, m) > apart_by(m, r) ? r : l) = m;
+    }
+    return apart_by(l, r);
+  };
   for (int path = 0; path < paths; ++path) {
     const double a = size * std::array{0.01, 0.03, 0.06, 0.15, 0.4}[std::size_t(path)], d = 0.2 * a;
     Walker one(tree, body.mesh, 0.3 * h, unsigned(path)), two(tree, body.mesh, 0.3 * h, unsigned(path) + 100);
     V last[2], F[2];
-    std::array<ResponseContact<double>, 2> before_contacts;
+    Both before_contacts, before_drawn;
     for (int i = 0; i < steps; ++i) {
       const V from[2] = {one.place, two.place}, turned[2] = {one.normal, two.normal};
       one.step(0.005 * h);
@@ -161,97 +176,105 @@ void try_body(const Body& body) {
             .radius = a,
             .displacement = -d * w.normal + 0.3 * d * tangential(V(0.6, 0.3, 0.74), w.normal)};
       };
-      const ResponseContact<double> both[2] = {contact(one), contact(two)};
+      const Both both = {contact(one), contact(two)};
       const std::size_t count = path % 2 == 0 ? 1 : 2;
-      tick.solve(both, count, F);
+      tick.solve(both.data(), count, F);
       const double stiff =
           mu * both[0].displacement.norm() / disc_compliance(a, body.nu).normal;  // half-space, at most
       const double moved = ((one.place - from[0]).norm() + (two.place - from[1]).norm()) / (std::min)(h, a) +
                            (one.normal - turned[0]).norm() + (two.normal - turned[1]).norm();
+      double steep = 0;
       for (std::size_t c = 0; c < count; ++c) {
         REQUIRE(is_finite(F[c]));
-        const double change_here = (F[c] - last[c]).norm() / stiff;
-        if (i > 0 && moved < 0.2 && change_here > force_jump) {
-          force_jump = change_here;
-          steepest = {before_contacts[0], before_contacts[1], both[0], both[1]};
-          steep_count = count;
-          steep_moved = moved;
-        }
+        steep = (std::max)(steep, (F[c] - last[c]).norm() / stiff);
         last[c] = F[c];
       }
-      before_contacts = {both[0], both[1]};
+      // A fast change over a small way may be a jump: looked at closely.
+      if (i > 0 && moved < 0.2 && steep > 0.05) {
+        const auto change_of_force = [&](const Both& l, const Both& r) {
+          V Fl[2], Fr[2];
+          tick.solve(l.data(), count, Fl);
+          tick.solve(r.data(), count, Fr);
+          return ((Fl[0] - Fr[0]).norm() + (count > 1 ? (Fl[1] - Fr[1]).norm() : 0)) / stiff;
+        };
+        force_jump = (std::max)(force_jump, left_over(before_contacts, both, change_of_force));
+        tick.solve(both.data(), count, F);
+      }
+      before_contacts = both;
       if (i % 20 == 0 || i % 20 == 1) {
         tick.displace(display, u.data(), 3);
+        const double d_norm = both[0].displacement.norm();
+        const auto apart = [&](const std::vector<double>& l, const std::vector<double>& r) {
+          double largest = 0;
+          for (std::size_t k = 0; k < points.size(); ++k)
+            largest = (std::max)(
+                largest,
+                V(l[3 * k] - r[3 * k], l[3 * k + 1] - r[3 * k + 1], l[3 * k + 2] - r[3 * k + 2]).norm());
+          return largest / d_norm;
+        };
         for (std::size_t k = 0; k < points.size(); ++k) {
-          const V v(u[3 * k], u[3 * k + 1], u[3 * k + 2]),
-              w(before[3 * k], before[3 * k + 1], before[3 * k + 2]);
+          const V v(u[3 * k], u[3 * k + 1], u[3 * k + 2]);
           REQUIRE(is_finite(v));
-          most = (std::max)(most, v.norm() / both[0].displacement.norm());
-          if (i % 20 == 1 && moved < 0.2)
-            field_jump = (std::max)(field_jump, (v - w).norm() / both[0].displacement.norm());
+          most = (std::max)(most, v.norm() / d_norm);
         }
+        if (i % 20 == 1 && moved < 0.2 && apart(u, before) > 0.1) {
+          const auto change_of_field = [&](const Both& l, const Both& r) {
+            std::vector<double> ul(u.size()), ur(u.size());
+            tick.solve(l.data(), count, F);
+            tick.displace(display, ul.data(), 3);
+            tick.solve(r.data(), count, F);
+            tick.displace(display, ur.data(), 3);
+            return apart(ul, ur);
+          };
+          field_jump = (std::max)(field_jump, left_over(before_drawn, both, change_of_field));
+        }
+        before_drawn = both;
         before = u;
       }
       if (i % 50 == 0) {
         V coarse, better;
-        linear.solve(both, 1, &coarse);
+        linear.solve(both.data(), 1, &coarse);
         linear.displace(display, u.data(), 3);
         for (std::size_t k = 0; k < points.size(); ++k)
           most_linear = (std::max)(
               most_linear, V(u[3 * k], u[3 * k + 1], u[3 * k + 2]).norm() / both[0].displacement.norm());
-        finer.solve(both, 1, &better);
+        finer.solve(both.data(), 1, &better);
         stiffest = (std::max)(stiffest, coarse.norm() / stiff);
         if (one.place.y() > body.held_below + 2 * a)
           change.push_back((coarse - better).norm() / better.norm());
       }
     }
   }
-  // The step with the largest change of force, cut in 64: where the force is continuous, each part has a small share.
-  double share = 0;
-  {
-    V F[2], last[2];
-    for (int i = 0; i <= 64; ++i) {
-      ResponseContact<double> between[2];
-      for (std::size_t c = 0; c < 2; ++c) {
-        const auto mix = [&](const V& l, const V& r) { return V(l + i / 64.0 * (r - l)); };
-        between[c] = {mix(steepest[c].place, steepest[c + 2].place),
-                      mix(steepest[c].normal, steepest[c + 2].normal).normalized(), steepest[c].radius,
-                      mix(steepest[c].displacement, steepest[c + 2].displacement)};
-      }
-      tick.solve(between, steep_count, F);
-      for (std::size_t c = 0; c < steep_count; ++c) {
-        if (i > 0)
-          share = (std::max)(share, (F[c] - last[c]).norm() /
-                                        (mu * steepest[0].displacement.norm() /
-                                         disc_compliance(steepest[0].radius, body.nu).normal) /
-                                        force_jump);
-        last[c] = F[c];
-      }
-    }
-  }
   std::sort(change.begin(), change.end());
   const double median = change.empty() ? 0 : change[change.size() / 2],
                worst = change.empty() ? 0 : change[change.size() * 95 / 100];
-  MESSAGE(std::string(body.name), ": force per half-space's ", stiffest, ", largest step of force ",
-          force_jump, " at ", steep_moved, ", of it in one 64th ", share, ", field's largest step ",
-          field_jump, ", largest |u| / d ", most, ", of first order ", most_linear,
+  MESSAGE(std::string(body.name), ": force per half-space's ", stiffest, ", largest jump of force ",
+          force_jump, ", of field ", field_jump, ", largest |u| / d ", most, ", of first order ", most_linear,
           ", change with twice the vertices: median ", median, ", 95 % ", worst, " of ", change.size());
-  CHECK(stiffest <= 1 / 0.06);  // PatchTable: the compliance is at least 0.06 of the half-space's smaller one
-  CHECK(share * force_jump < body.jump);
+  // contact_system.hpp: the compliance is at least 0.1 of the half-space's smaller one, and the loads beside the force count
+  // as at most half of d.
+  CHECK(stiffest <= 1.5 / 0.1);
+  // No jump: a jump keeps its size when a step is cut in 16,384. A force goes through up to 15 half-space's, at worst
+  // within a hundredth of a step, where two contacts on a floppy body meet the least compliance.
+  CHECK(force_jump < body.jump);
+  CHECK(field_jump < body.jump);
   CHECK(median < body.convergence);
   CHECK(most < 5.5);  // 4 d at the solve mesh's vertices, and a near field of up to 1.5 d between them
 }
 }  // namespace
 
 TEST_CASE("concave, thin, in pieces, with edges: finite, without jumps, converging") {
-  // Force jumps that are known and not understood stand in the bounds of torus and plates: docs/accuracy.md. The others have none:
-  // 0.3 is above the steepest slope that one 64th of a step can show, 0.13 on the box.
   const auto block = [](int, int, int) { return true; };
-  try_body({"torus", torus(0.05, 0.02, 36, 18), -0.012, 0.5, 2, 0.1});
-  try_body({"L", cells({8, 8, 4}, 0.0125, [](int i, int j, int) { return i < 4 || j < 4; }), 1e-6, 0.45, 0.3,
-            0.1});
-  try_body({"plate 1:20, held below", cells({20, 1, 20}, 0.005, block), 1e-6, 0.45, 5, 0.15});
-  try_body({"plate 1:20, standing", cells({20, 20, 1}, 0.005, block), 1e-6, 0.3, 20, 0.3});
-  try_body({"two spheres", two_spheres(), -0.02, 0.5, 0.3, 0.1});
-  try_body({"box", cells({8, 8, 8}, 0.0125, block), 1e-6, 0.3, 0.3, 0.1});
+  const auto bowl = [](int i, int j, int k) { return j == 0 || i == 0 || i == 7 || k == 0 || k == 7; };
+  const auto hole = [](int i, int j, int) { return i < 2 || i > 4 || j < 3 || j > 5; };
+  try_body({"torus", torus(0.05, 0.02, 36, 18), -0.012, 0.5, 0.1});
+  try_body(
+      {"L", cells({8, 8, 4}, 0.0125, [](int i, int j, int) { return i < 4 || j < 4; }), 1e-6, 0.45, 0.1});
+  try_body({"plate 1:20, held below", cells({20, 1, 20}, 0.005, block), 1e-6, 0.45, 0.15});
+  try_body({"plate 1:20, standing", cells({20, 20, 1}, 0.005, block), 1e-6, 0.3, 0.6});
+  try_body({"two spheres", two_spheres(), -0.02, 0.5, 0.1});
+  try_body({"box", cells({8, 8, 8}, 0.0125, block), 1e-6, 0.3, 0.1});
+  // The bowl jumps, by 0.23 and 0.28; not understood, a record and no proof: docs/accuracy.md.
+  try_body({"bowl", cells({8, 8, 8}, 0.0125, bowl), 1e-6, 0.45, 0.6, 0.4});
+  try_body({"block with a hole", cells({7, 9, 4}, 0.0125, hole), 1e-6, 0.45, 0.2});
 }

@@ -7,8 +7,11 @@
 #include <palpate/surface/ellipsoid.hpp>
 #include <palpate/surface/sphere.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -55,6 +58,30 @@ template <Real S>
           {"box", Box<S>({.half = Vec3<S>(S(0.03), S(0.02), S(0.01))}).mesh(vertices)},
           {"torus", torus<S>(S(0.03), S(0.01), side, side)},
           {"blob", blob<S>(vertices)}};
+}
+
+/// Is it a closed, oriented mesh with volume? Independent of inspect(): every directed edge once, its reverse once, every
+/// vertex used and finite, every triangle with an area, and the right sign of the volume, all in long double.
+template <Real S>
+[[nodiscard]] inline bool is_sound(const MeshData<S>& mesh) {
+  using V = Vec3<long double>;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+  std::vector<bool> used(mesh.vertices.size(), false);
+  long double volume = 0;
+  for (const auto& t : mesh.triangles) {
+    std::array<V, 3> p;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (t[k] >= mesh.vertices.size() || !edges.insert({t[k], t[(k + 1) % 3]}).second) return false;
+      used[t[k]] = true;
+      p[k] = mesh.vertices[t[k]].template cast<long double>();
+      if (!is_finite(mesh.vertices[t[k]])) return false;
+    }
+    if (!((p[1] - p[0]).cross(p[2] - p[0]).norm() > 0)) return false;
+    volume += p[0].dot(p[1].cross(p[2]));
+  }
+  for (const auto& [a, b] : edges)
+    if (a == b || edges.count({b, a}) == 0) return false;
+  return volume > 0 && !mesh.triangles.empty() && std::find(used.begin(), used.end(), false) == used.end();
 }
 
 /// Distance from x to the triangle (a, b, c), in long double: plane where the foot is inside, else the three

@@ -23,6 +23,8 @@ struct SkeletonContact {
   Vec3<S> force = Vec3<S>::Zero();         ///< F on the elastic object: minus the force on the tool [N]
   Vec3<S> displacement = Vec3<S>::Zero();  ///< D [m]
   S normal_force = 0;                      ///< F_cn >= 0 [N]: how far the contact counts among several
+
+  [[nodiscard]] bool operator==(const SkeletonContact&) const noexcept = default;
 };
 
 /// What the beams carry, for a scene of scalar S; the numbers come from a solve in double.

@@ -66,31 +66,32 @@ class BeamSkeletonDeformation {
   template <Real T>
   void write_rest(const VertexBuffer<T>& out) noexcept {
     field_.write_rest(out);
+    result_ = {};
+    loaded_.clear();
+    shown_.clear();
   }
 
-  /// Writes what moved since the last call. More contacts than the skeleton takes: the surplus is left out, reported.
+  /// Writes what moved since the last call. More contacts than the skeleton takes: the surplus is left out, reported. With
+  /// the same contacts as in the last call nothing is done.
   template <Real T>
   Moved<S> write(std::span<const ContactState<S>> contacts, const VertexBuffer<T>& out) noexcept {
-    const std::size_t count = (std::min)(contacts.size(), most_contacts), points = released_.size();
-    std::array<SkeletonContact<S>, most_contacts> loaded;
-    std::array<ContactDisplacement<D>, most_contacts> shown;
+    Moved<S> result;
+    if (contacts.size() > most_contacts) result.status |= Status::region_overflow;
+    if (out.positions == nullptr || !take(contacts.first((std::min)(contacts.size(), most_contacts))))
+      return result;
+    const std::size_t count = loaded_.size(), points = released_.size();
+    regions_.share(std::span<const SkeletonContact<S>>(loaded_.begin(), count), result_);
     for (std::size_t j = 0; j < count; ++j) {
-      const ContactState<S>& c = contacts[j];
-      loaded[j] = {c.origin(), -c.force, c.displacement, c.normal_force};
-      shown[j] = {c.origin().template cast<D>(), c.normal.template cast<D>(),
-                  c.displacement.template cast<D>(), static_cast<D>(c.area), static_cast<D>(c.points)};
-    }
-    regions_.share(std::span<const SkeletonContact<S>>(loaded.data(), count), result_);
-    for (std::size_t j = 0; j < count; ++j) {
-      release(regions_.skeleton(), result_.loads[j], p_.fixed, loaded[j].displacement,
+      release(regions_.skeleton(), result_.loads[j], p_.fixed, loaded_[j].displacement,
               std::span<Vec3<S>>(released_));
       for (std::size_t i = 0; i < points; ++i) corners_[j * points + i] = released_[i].template cast<D>();
     }
-    const Moved<D> moved = field_.write(std::span<const ContactDisplacement<D>>(shown.data(), count),
+    const Moved<D> moved = field_.write(std::span<const ContactDisplacement<D>>(shown_.begin(), count),
                                         std::span<const Vec3<D>>(corners_.data(), count * points), out);
-    Moved<S> result{moved.vertices, moved.lower.template cast<S>(), moved.upper.template cast<S>(),
-                    moved.status};
-    if (count < contacts.size()) result.status |= Status::region_overflow;
+    result.vertices = moved.vertices;
+    result.lower = moved.lower.template cast<S>();
+    result.upper = moved.upper.template cast<S>();
+    result.status |= moved.status;
     return result;
   }
 
@@ -102,10 +103,34 @@ class BeamSkeletonDeformation {
  private:
   static constexpr const char* name = "BeamSkeletonDeformation";
 
+  // Keeps what is drawn of the contacts; false when it is what is drawn already.
+  bool take(std::span<const ContactState<S>> contacts) noexcept {
+    bool same = contacts.size() == loaded_.size();
+    for (std::size_t j = 0; same && j < contacts.size(); ++j)
+      same = loaded_[j] == loaded(contacts[j]) && shown_[j] == shown(contacts[j]);
+    if (same) return false;
+    loaded_.clear();
+    shown_.clear();
+    for (const ContactState<S>& c : contacts) {
+      loaded_.push_back(loaded(c));
+      shown_.push_back(shown(c));
+    }
+    return true;
+  }
+  [[nodiscard]] static SkeletonContact<S> loaded(const ContactState<S>& c) noexcept {
+    return {c.origin(), -c.force, c.displacement, c.normal_force};
+  }
+  [[nodiscard]] static ContactDisplacement<D> shown(const ContactState<S>& c) noexcept {
+    return {c.origin().template cast<D>(), c.normal.template cast<D>(), c.displacement.template cast<D>(),
+            static_cast<D>(c.area), static_cast<D>(c.points)};
+  }
+
   Params p_;
   R regions_;
   DisplacementField<I, N> field_;
   typename R::Result result_{};
+  FixedVector<SkeletonContact<S>, most_contacts> loaded_;     // of the last write, as the skeleton sees them
+  FixedVector<ContactDisplacement<D>, most_contacts> shown_;  // and as they are drawn
   std::vector<Vec3<S>> released_;
   std::vector<Vec3<D>> corners_;
 };

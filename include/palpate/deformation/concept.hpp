@@ -12,6 +12,7 @@
 /// `DisplacementField` is the output stage that models share: displacements of corners to vertices in your buffer.
 /// Absent on purpose: volumetric meshes; only the surface is seen and touched.
 
+#include <palpate/config.hpp>
 #include <palpate/core/status.hpp>
 #include <palpate/core/vector.hpp>
 #include <palpate/equivalent/contact_state.hpp>
@@ -45,19 +46,20 @@ struct Moved {
 };
 
 namespace detail {
+/// One by one: gathered on the stack first, the copy would wait for the stores.
+template <Real T>
+PALPATE_INLINE void put3(unsigned char* at, T x, T y, T z) noexcept {
+  std::memcpy(at, &x, sizeof(T));
+  std::memcpy(at + sizeof(T), &y, sizeof(T));
+  std::memcpy(at + 2 * sizeof(T), &z, sizeof(T));
+}
 /// Writes x[i], y[i], z[i] to vertex number vertex(i), for all i < count.
 template <Real T, class S, class Vertex>
 inline void store3(T* to, std::size_t stride, std::size_t count, const Vertex& vertex, const S* x, const S* y,
                    const S* z) noexcept {
   unsigned char* const base = reinterpret_cast<unsigned char*>(to);
-  for (std::size_t i = 0; i < count; ++i) {
-    unsigned char* const at = base + stride * vertex(i);
-    const T tx = static_cast<T>(x[i]), ty = static_cast<T>(y[i]), tz = static_cast<T>(z[i]);
-    std::memcpy(at, &tx,
-                sizeof(T));  // one by one: gathered on the stack first, the copy would wait for the stores
-    std::memcpy(at + sizeof(T), &ty, sizeof(T));
-    std::memcpy(at + 2 * sizeof(T), &tz, sizeof(T));
-  }
+  for (std::size_t i = 0; i < count; ++i)
+    put3(base + stride * vertex(i), static_cast<T>(x[i]), static_cast<T>(y[i]), static_cast<T>(z[i]));
 }
 }  // namespace detail
 

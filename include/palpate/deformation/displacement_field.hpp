@@ -280,65 +280,26 @@ class DisplacementField {
     }
   }
 
-  struct NormalBlock {  // area vectors of up to block_size vertices, and their slots
-    Block<S> x{}, y{}, z{};
-    std::array<std::uint32_t, block_size> slot{};
-  };
-
   template <Real T>
   PALPATE_FLATTEN void write_normals(const VertexBuffer<T>& out) const noexcept {
-    constexpr std::size_t lanes = detail::lanes<S>;
-    NormalBlock block;
-    std::size_t filled = 0;
-    const auto add = [&](const typename VertexNormals<S>::Run& run, std::uint32_t offset, std::size_t count) {
-      if (filled + lanes > block_size) {
-        store_normals(block, filled, out);
-        filled = 0;
-      }
-      normals_.area(run, offset, position_[0].data(), position_[1].data(), position_[2].data(),
-                    block.x.value + filled, block.y.value + filled, block.z.value + filled);
-      const std::uint32_t first = run.first + offset;
-      for (std::uint32_t i = 0; i < lanes; ++i) block.slot[filled + i] = first + i;
-      filled += count;
+    const auto rest = [this](int axis, std::size_t slot) { return partition().normal(axis)[slot]; };
+    unsigned char* const base = reinterpret_cast<unsigned char*>(out.normals);
+    const auto store = [base, stride = out.normal_stride, order = partition().order().data()](
+                           std::size_t slot, S x, S y, S z) {
+      detail::put3(base + stride * order[slot], static_cast<T>(x), static_cast<T>(y), static_cast<T>(z));
     };
+    using Units = typename VertexNormals<S>::template Units<decltype(rest), decltype(store)>;
+    Units units(normals_, position_[0].data(), position_[1].data(), position_[2].data(), rest, store);
     for (std::size_t f = 0; f < dirty_.size(); ++f) {
       if (!dirty_[f]) continue;
       for (std::size_t r = run_start_[f]; r < run_start_[f + 1]; ++r)
-        add(normals_.runs()[r], 0, normals_.runs()[r].count);
+        units.add(normals_.runs()[r], 0, normals_.runs()[r].count);
       for (std::size_t k = rim_start_[f]; k < rim_start_[f + 1]; ++k) {
         const auto& run = normals_.runs()[rim_[k].run];
-        if (!dirty_[rim_[k].face]) add(run, rim_[k].slot - run.first, 1);
+        if (!dirty_[rim_[k].face]) units.add(run, rim_[k].slot - run.first, 1);
       }
     }
-    store_normals(block, filled, out);
-  }
-
-  // Area vectors to unit vectors in the caller's buffer.
-  template <Real T>
-  void store_normals(NormalBlock& block, std::size_t count, const VertexBuffer<T>& out) const noexcept {
-    constexpr S tiny = (std::numeric_limits<S>::min)();
-    Block<S> square;
-    for (std::size_t i = 0; i < block_size; ++i)
-      square[i] = block.x[i] * block.x[i] + block.y[i] * block.y[i] + block.z[i] * block.z[i];
-    for (std::size_t i = 0; i < block_size; ++i) {
-      const S scale = detail::inverse_root(square[i]);
-      block.x[i] *= scale;
-      block.y[i] *= scale;
-      block.z[i] *= scale;
-    }
-    for (std::size_t i = count; i < block_size; ++i) square[i] = S(1);
-    const bool collapsed = detail::least(square) <= tiny;
-    for (std::size_t i = 0; collapsed && i < count; ++i) {  // keep the undeformed normal
-      if (square[i] > tiny) continue;
-      block.x[i] = partition().normal(0)[block.slot[i]];
-      block.y[i] = partition().normal(1)[block.slot[i]];
-      block.z[i] = partition().normal(2)[block.slot[i]];
-    }
-    const std::uint32_t* const order = partition().order().data();
-    detail::store3(
-        out.normals, out.normal_stride, count,
-        [&block, order](std::size_t i) { return order[block.slot[i]]; }, block.x.value, block.y.value,
-        block.z.value);
+    units.flush();
   }
 
   static constexpr const char* name = "DisplacementField";

@@ -67,7 +67,7 @@ class HalfSpaceDeformation {
   /// Fills the whole buffer with the undeformed shape. The next write() starts from it.
   template <Real T>
   void write_rest(const VertexBuffer<T>& out) noexcept {
-    count_ = 0;
+    given_ = count_ = 0;
     at_rest_ = true;
     displace();
     store(out);

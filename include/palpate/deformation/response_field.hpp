@@ -105,7 +105,7 @@ class ResponseFieldDeformation {
           high = {high.x.max(at.x), high.y.max(at.y), high.z.max(at.z)};
           ResponseTick<Contacts>::put_lanes(display_.vertex() + slot, at,
                                             [=](std::size_t v, float px, float py, float pz) {
-                                              put(to + stride * v, T(px), T(py), T(pz));
+                                              detail::put3(to + stride * v, T(px), T(py), T(pz));
                                               if (keep) x[v] = px, y[v] = py, z[v] = pz;
                                             });
         });
@@ -117,7 +117,7 @@ class ResponseFieldDeformation {
     if (p_.normals && out.normals != nullptr) {
       unsigned char* const base = reinterpret_cast<unsigned char*>(out.normals);
       each_normal([base, stride = out.normal_stride](std::size_t v, float nx, float ny, float nz) {
-        put(base + stride * v, T(nx), T(ny), T(nz));
+        detail::put3(base + stride * v, T(nx), T(ny), T(nz));
       });
     }
     return moved;
@@ -130,13 +130,6 @@ class ResponseFieldDeformation {
 
  private:
   static constexpr const char* name = "ResponseFieldDeformation";
-
-  template <Real T>
-  static PALPATE_INLINE void put(unsigned char* at, T x, T y, T z) noexcept {
-    std::memcpy(at, &x, sizeof(T));  // one by one, see store3
-    std::memcpy(at + sizeof(T), &y, sizeof(T));
-    std::memcpy(at + 2 * sizeof(T), &z, sizeof(T));
-  }
 
   [[nodiscard]] ResponseContact<S> patch_of(const ContactState<S>& c) const noexcept {
     const S area = c.area > S(0) ? c.area : S(0);

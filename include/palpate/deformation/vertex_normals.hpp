@@ -84,45 +84,91 @@ class VertexNormals {
     x += offset, y += offset, z += offset;
     const std::uint32_t last = r[run.size - 1];
     const Lanes ox = load_lanes(x + last), oy = load_lanes(y + last), oz = load_lanes(z + last);
+    Lanes px = load_lanes(x + r[0]), py = load_lanes(y + r[0]), pz = load_lanes(z + r[0]);
     Lanes sx = Lanes::Zero(), sy = Lanes::Zero(), sz = Lanes::Zero();
-    for (std::size_t j = 0; j + 2 < run.size; j += 2) {
-      const std::uint32_t p = r[j], q = r[j + 1], s = r[j + 2];
+    const auto pair = [&](std::size_t j) {
+      const std::uint32_t q = r[j + 1], s = r[j + 2];
+      const Lanes nx = load_lanes(x + s), ny = load_lanes(y + s), nz = load_lanes(z + s);
       const Lanes ax = load_lanes(x + q) - ox, ay = load_lanes(y + q) - oy, az = load_lanes(z + q) - oz,
-                  bx = load_lanes(x + s) - load_lanes(x + p), by = load_lanes(y + s) - load_lanes(y + p),
-                  bz = load_lanes(z + s) - load_lanes(z + p);
+                  bx = nx - px, by = ny - py, bz = nz - pz;
       sx += ay * bz - az * by;
       sy += az * bx - ax * bz;
       sz += ax * by - ay * bx;
+      px = nx, py = ny, pz = nz;
+    };
+    pair(0);
+    if (run.size == 6) {  // as nearly all are
+      pair(2);
+    } else {
+      for (std::size_t j = 2; j + 2 < run.size; j += 2) pair(j);
     }
     detail::store_lanes(out_x, sx);
     detail::store_lanes(out_y, sy);
     detail::store_lanes(out_z, sz);
   }
 
+  /// Unit normals in the making, a block of vertices at a time. `x`, `y`, `z`: the vertices' coordinates; rest(axis, vertex):
+  /// component of the normal of a vertex whose ring has collapsed; emit(vertex, x, y, z) takes the results.
+  template <class Rest, class Emit>
+  class Units {
+   public:
+    Units(const VertexNormals& normals, const S* x, const S* y, const S* z, const Rest& rest,
+          const Emit& emit) noexcept
+        : normals_(normals), x_(x), y_(y), z_(z), rest_(rest), emit_(emit) {}
+
+    /// `count` vertices from number `offset` of the run on.
+    PALPATE_INLINE void add(const Run& run, std::uint32_t offset, std::size_t count) noexcept {
+      if (filled_ + lanes > block_size) flush();
+      normals_.area(run, offset, x_, y_, z_, nx_.value + filled_, ny_.value + filled_, nz_.value + filled_);
+      for (std::uint32_t i = 0; i < lanes; ++i) vertex_[filled_ + i] = run.first + offset + i;
+      filled_ += count;
+    }
+    /// Emits what has been added.
+    void flush() noexcept {
+      constexpr S tiny = (std::numeric_limits<S>::min)();
+      Block<S> square;
+      for (std::size_t i = 0; i < block_size; ++i)
+        square[i] = nx_[i] * nx_[i] + ny_[i] * ny_[i] + nz_[i] * nz_[i];
+      for (std::size_t i = 0; i < block_size; ++i) {
+        const S scale = detail::inverse_root(square[i]);
+        nx_[i] *= scale;
+        ny_[i] *= scale;
+        nz_[i] *= scale;
+      }
+      for (std::size_t i = filled_; i < block_size; ++i) square[i] = S(1);
+      const bool collapsed = detail::least(square) <= tiny;
+      for (std::size_t i = 0; collapsed && i < filled_; ++i) {
+        if (square[i] > tiny) continue;
+        nx_[i] = rest_(0, vertex_[i]);
+        ny_[i] = rest_(1, vertex_[i]);
+        nz_[i] = rest_(2, vertex_[i]);
+      }
+      // In registers: what emit writes might be any of these otherwise.
+      const Emit emit = emit_;
+      const std::size_t filled = filled_;
+      for (std::size_t i = 0; i < filled; ++i) emit(vertex_[i], nx_[i], ny_[i], nz_[i]);
+      filled_ = 0;
+    }
+
+   private:
+    const VertexNormals& normals_;
+    const S *x_, *y_, *z_;
+    const Rest& rest_;
+    const Emit& emit_;
+    Block<S> nx_{}, ny_{}, nz_{};
+    std::array<std::uint32_t, block_size> vertex_{};
+    std::size_t filled_ = 0;
+  };
+
   /// emit(vertex, x, y, z) with every vertex's unit normal; one whose ring has collapsed has `rest`, its three lists of
   /// components.
   template <class Emit>
-  void each_unit(const S* x, const S* y, const S* z, const std::array<std::vector<S>, 3>& rest,
-                 const Emit& emit) const noexcept {
-    constexpr S tiny = (std::numeric_limits<S>::min)();
-    std::array<S, lanes> nx, ny, nz, square;
-    for (const Run& run : runs_) {
-      area(run, 0, x, y, z, nx.data(), ny.data(), nz.data());
-      for (std::size_t i = 0; i < lanes; ++i) square[i] = nx[i] * nx[i] + ny[i] * ny[i] + nz[i] * nz[i];
-      for (std::size_t i = 0; i < lanes; ++i) {
-        const S scale = detail::inverse_root(square[i]);
-        nx[i] *= scale;
-        ny[i] *= scale;
-        nz[i] *= scale;
-      }
-      for (std::size_t i = 0; i < run.count; ++i) {
-        const std::size_t v = run.first + i;
-        if (square[i] > tiny)
-          emit(v, nx[i], ny[i], nz[i]);
-        else
-          emit(v, rest[0][v], rest[1][v], rest[2][v]);
-      }
-    }
+  PALPATE_FLATTEN void each_unit(const S* x, const S* y, const S* z,
+                                 const std::array<std::vector<S>, 3>& rest, const Emit& emit) const noexcept {
+    const auto at_rest = [&rest](std::size_t axis, std::size_t v) { return rest[axis][v]; };
+    Units<decltype(at_rest), Emit> units(*this, x, y, z, at_rest, emit);
+    for (const Run& run : runs_) units.add(run, 0, run.count);
+    units.flush();
   }
 
  private:

@@ -18,25 +18,22 @@ template <Real S>
   return std::sqrt(G.cwiseAbs().rowwise().sum().maxCoeff());  // Gershgorin's bound on the largest eigenvalue
 }
 
-/// X times each of eight points.
+/// X times each point.
 template <Real S>
-[[nodiscard]] inline PointLanes<S> place(const Pose<S>& X, const PointLanes<S>& p) noexcept {
+PALPATE_FLATTEN [[nodiscard]] inline PointLanes<S> place(const Pose<S>& X, const PointLanes<S>& p) noexcept {
   const auto& R = X.rotation;
   const auto& t = X.translation;
-  const S xx = R(0, 0), xy = R(0, 1), xz = R(0, 2), yx = R(1, 0), yy = R(1, 1), yz = R(1, 2);
-  const S zx = R(2, 0), zy = R(2, 1), zz = R(2, 2), tx = t.x(), ty = t.y(), tz = t.z();
+  const LaneArray<S> px = lane_array(p.x), py = lane_array(p.y), pz = lane_array(p.z);
   PointLanes<S> x;
-  for (std::size_t i = 0; i < p.x.size(); ++i) {
-    x.x[i] = xx * p.x[i] + xy * p.y[i] + xz * p.z[i] + tx;
-    x.y[i] = yx * p.x[i] + yy * p.y[i] + yz * p.z[i] + ty;
-    x.z[i] = zx * p.x[i] + zy * p.y[i] + zz * p.z[i] + tz;
-  }
+  lane_array(x.x) = R(0, 0) * px + R(0, 1) * py + R(0, 2) * pz + t.x();
+  lane_array(x.y) = R(1, 0) * px + R(1, 1) * py + R(1, 2) * pz + t.y();
+  lane_array(x.z) = R(2, 0) * px + R(2, 1) * py + R(2, 2) * pz + t.z();
   return x;
 }
 }  // namespace detail
 
 /// Calls visit(begin, count, x) for every leaf of the tool's tree with a point that may be inside the
-/// surface: `count` <= 8 points from `begin` on, with x their places in object coordinates [m]. No equation.
+/// surface: `count` <= lane_count points from `begin` on, with x their places in object coordinates [m]. No equation.
 ///
 /// Precondition: X is usable (core/pose.hpp). A ball that surface.separated() says is apart is left out with
 /// all its points; so a tool far away costs one such test, and the rest costs in proportion to what touches:

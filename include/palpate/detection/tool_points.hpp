@@ -29,7 +29,7 @@ struct PointTool {
 /// force law.
 ///
 /// Points are stored by place: `original(i)` is the number that point i had when it was given. The tree's
-/// nodes are in pre-order, a node's points are contiguous, leaves hold at most 8; a walk needs no stack
+/// nodes are in pre-order, a node's points are contiguous, leaves hold at most `lane_count`; a walk needs no stack
 /// (candidates.hpp). Constructors report what is out of range; `spacing` as resample().
 template <Real S>
 class ToolPoints {
@@ -80,7 +80,7 @@ class ToolPoints {
       points_.push_back(points[i]);
       areas_.push_back(areas[i]);
     }
-    // Leaves are full but for the last, so leaf k begins at point 8 k.
+    // Leaves are full but for the last, so leaf k begins at point k leaf_size.
     lanes_.resize((points_.size() + leaf_size - 1) / leaf_size);
     for (std::size_t i = 0; i < lanes_.size() * leaf_size; ++i) {
       const Vec3<S>& p = points_[(std::min)(i, points_.size() - 1)];
@@ -110,7 +110,7 @@ class ToolPoints {
   [[nodiscard]] std::span<const S> areas() const noexcept { return areas_; }
   [[nodiscard]] S contact_area() const noexcept { return contact_area_; }
   [[nodiscard]] Vec3<S> centre_of_mass() const noexcept { return centre_of_mass_; }
-  /// The eight points from `begin` on, where a leaf begins; the last leaf is filled up with its last point.
+  /// The `lane_count` points from `begin` on, where a leaf begins; the last leaf is filled up with its last point.
   [[nodiscard]] const PointLanes<S>& lanes(std::size_t begin) const noexcept {
     return lanes_[begin / leaf_size];
   }
@@ -118,7 +118,7 @@ class ToolPoints {
   [[nodiscard]] std::span<const Node> nodes() const noexcept { return nodes_; }
 
  private:
-  static constexpr std::uint32_t leaf_size = PointLanes<S>::size;
+  static constexpr std::uint32_t leaf_size = static_cast<std::uint32_t>(lane_count);
 
   void build(const std::vector<Vec3<S>>& points, std::uint32_t begin, std::uint32_t end) {
     const std::size_t index = nodes_.size();

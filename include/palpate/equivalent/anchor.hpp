@@ -54,6 +54,7 @@ template <class Slip, class Skew, FrictionLaw F, ForceLaw L>
   using S = typename L::Scalar;
   Vec3<S> tip = X * anchor.point_T;
   Vec3<S> D_t = tangential<S>(tip - anchor.origin, anchor.normal);
+  Vec3<S> along = unit_or<S>(D_t, Vec3<S>::Zero());
   const Vec3<S> motion = tip - anchor.tip;
   const S trial = D_t.norm();
   const S travel = motion.norm();
@@ -66,13 +67,15 @@ template <class Slip, class Skew, FrictionLaw F, ForceLaw L>
       anchor.origin += tangential<S>(motion, anchor.normal);
       anchor.normal = normal;
       D_t = tangential<S>(tip - anchor.origin, anchor.normal);
+      along = unit_or<S>(D_t, Vec3<S>::Zero());
     }
   } else if (now.stretch < trial) {
     const S slipped = trial - now.stretch;
     // p0 trails the tip by the stretch, so n lags the present normal by that distance.
     const Vec3<S> turned = anchor.normal + (normal - anchor.normal) * (slipped / (slipped + now.stretch));
     anchor.normal = unit_or<S>(turned, normal);
-    D_t = now.stretch * unit_or<S>(tangential<S>(D_t, anchor.normal), Vec3<S>::Zero());
+    along = unit_or<S>(tangential<S>(D_t, anchor.normal), Vec3<S>::Zero());
+    D_t = now.stretch * along;
     const Vec3<S> creep = centre - tip;
     const S distance = creep.norm();
     if (distance > S(0)) {
@@ -82,7 +85,7 @@ template <class Slip, class Skew, FrictionLaw F, ForceLaw L>
     anchor.origin = tip - D_t + depth * anchor.normal;
   }
   anchor.tip = tip;
-  return {-now.force.tangential * unit_or<S>(D_t, Vec3<S>::Zero()), tip, D_t, now.force.normal};
+  return {-now.force.tangential * along, tip, D_t, now.force.normal};
 }
 
 }  // namespace palpate

@@ -74,46 +74,31 @@ struct RegionSum {
   }
 };
 
-/// A RegionSum in the making, eight points at a time: lane i adds up the points i of all leaves, so that every line is one
-/// loop of vector instructions; total() adds the lanes.
+/// A RegionSum in the making, `lane_count` points at a time: lane i adds up the points i of all leaves, total() adds the lanes.
 template <Real S>
 class LaneSum {
  public:
   /// About this centre of mass [m].
   explicit LaneSum(const Vec3<S>& centre_of_mass) noexcept : centre_(centre_of_mass) {}
 
-  /// Adds eight points at x with forces f [N] along their exit directions; f is 0 and the depth <= 0 for those that do
-  /// not belong. Areas [m^2] are > 0.
-  void add(const PointLanes<S>& x, const PenetrationLanes<S>& in, const std::array<S, 8>& f,
-           const std::array<S, 8>& area) noexcept {
-    const S cx = centre_.x(), cy = centre_.y(), cz = centre_.z();
-    // Through arrays of its own: a compiler could not tell the sums from the arguments.
-    Lanes Fx, Fy, Fz, Tx, Ty, Tz;
-    for (std::size_t i = 0; i < lanes; ++i) {
-      Fx[i] = f[i] * in.gradient_x[i];
-      Fy[i] = f[i] * in.gradient_y[i];
-      Fz[i] = f[i] * in.gradient_z[i];
-    }
-    for (std::size_t i = 0; i < lanes; ++i) {
-      const S ax = x.x[i] - cx, ay = x.y[i] - cy, az = x.z[i] - cz;
-      Tx[i] = ay * Fz[i] - az * Fy[i];
-      Ty[i] = az * Fx[i] - ax * Fz[i];
-      Tz[i] = ax * Fy[i] - ay * Fx[i];
-    }
-    add(force_, Fx, Fy, Fz);
-    add(torque_, Tx, Ty, Tz);
-    Lanes mx, my, mz, spread;
-    for (std::size_t i = 0; i < lanes; ++i) {
-      mx[i] = f[i] * x.x[i];
-      my[i] = f[i] * x.y[i];
-      mz[i] = f[i] * x.z[i];
-      spread[i] = f[i] * (f[i] / area[i]);
-    }
-    add(moment_, mx, my, mz);
-    for (std::size_t i = 0; i < lanes; ++i) spread_[i] += spread[i];
-    for (std::size_t i = 0; i < lanes; ++i) magnitude_[i] += f[i];
-    for (std::size_t i = 0; i < lanes; ++i) {
-      sum_.points += in.depth[i] > S(0) ? 1u : 0u;
+  /// Adds points at x with forces f [N] along their exit directions; f is 0 and the depth <= 0 for those that do
+  /// not belong. `per_area`: 1/A_i [1/m^2].
+  PALPATE_FLATTEN void add(const PointLanes<S>& x, const PenetrationLanes<S>& in,
+                           const detail::LaneArray<S>& f,
+                           const std::array<S, lane_count>& per_area) noexcept {
+    using detail::lane_array;
+    const Lanes px = lane_array(x.x), py = lane_array(x.y), pz = lane_array(x.z),
+                Fx = f * lane_array(in.gradient_x), Fy = f * lane_array(in.gradient_y),
+                Fz = f * lane_array(in.gradient_z);
+    const Lanes ax = px - centre_.x(), ay = py - centre_.y(), az = pz - centre_.z();
+    force_[0] += Fx, force_[1] += Fy, force_[2] += Fz;
+    torque_[0] += ay * Fz - az * Fy, torque_[1] += az * Fx - ax * Fz, torque_[2] += ax * Fy - ay * Fx;
+    moment_[0] += f * px, moment_[1] += f * py, moment_[2] += f * pz;
+    magnitude_ += f;
+    spread_ += f * (f * lane_array(per_area));
+    for (const S depth : in.depth) sum_.points += depth > S(0) ? 1u : 0u;
+    if (!(lane_array(in.depth).maxCoeff() > sum_.deepest)) return;
+    for (std::size_t i = 0; i < in.depth.size(); ++i) {
       if (!(in.depth[i] > sum_.deepest)) continue;
       sum_.deepest = in.depth[i];
       sum_.exit = Vec3<S>(in.gradient_x[i], in.gradient_y[i], in.gradient_z[i]);
@@ -126,32 +111,26 @@ class LaneSum {
 
   [[nodiscard]] RegionSum<S> total() const noexcept {
     RegionSum<S> sum = sum_;
-    for (std::size_t i = 0; i < lanes; ++i) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto k = static_cast<int>(axis);
-        sum.force[k] += force_[axis][i];
-        sum.torque[k] += torque_[axis][i];
-        sum.moment[k] += moment_[axis][i];
-      }
-      sum.magnitude += magnitude_[i];
-      sum.spread += spread_[i];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto k = static_cast<int>(axis);
+      sum.force[k] += force_[axis].sum();
+      sum.torque[k] += torque_[axis].sum();
+      sum.moment[k] += moment_[axis].sum();
     }
+    sum.magnitude += magnitude_.sum();
+    sum.spread += spread_.sum();
     return sum;
   }
 
  private:
-  static constexpr std::size_t lanes = PointLanes<S>::size;
-  using Lanes = std::array<S, lanes>;
+  using Lanes = detail::LaneArray<S>;
+  using Lanes3 = std::array<Lanes, 3>;
 
-  static void add(std::array<Lanes, 3>& sum, const Lanes& x, const Lanes& y, const Lanes& z) noexcept {
-    for (std::size_t i = 0; i < lanes; ++i) sum[0][i] += x[i];
-    for (std::size_t i = 0; i < lanes; ++i) sum[1][i] += y[i];
-    for (std::size_t i = 0; i < lanes; ++i) sum[2][i] += z[i];
-  }
+  [[nodiscard]] static Lanes3 zero() noexcept { return {Lanes::Zero(), Lanes::Zero(), Lanes::Zero()}; }
 
   Vec3<S> centre_;
-  std::array<Lanes, 3> force_{}, torque_{}, moment_{};
-  Lanes magnitude_{}, spread_{};
+  Lanes3 force_ = zero(), torque_ = zero(), moment_ = zero();
+  Lanes magnitude_ = Lanes::Zero(), spread_ = Lanes::Zero();
   RegionSum<S> sum_{};  // what is not a plain sum: the deepest point and the count
 };
 

@@ -103,6 +103,12 @@ class DuffingForce {
     return (std::min)(depth * (p_.c1 + (p_.c3 * depth) * depth), max_force_);
   }
 
+  /// Eq. (3) at several depths in [0, max_depth()] at once; `V` adds and multiplies as a number does.
+  template <class V>
+  [[nodiscard]] V forces(const V& depth) const noexcept {
+    return depth * (p_.c1 + (p_.c3 * depth) * depth);
+  }
+
   /// dF/dD [N/m] at depth D [m].
   [[nodiscard]] S stiffness(S depth) const noexcept {
     if (!is_positive(depth) || !(depth < max_depth_)) return S(0);

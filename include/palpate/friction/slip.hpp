@@ -33,13 +33,39 @@ struct SkewedForce {
 };
 
 namespace detail {
-// Root of an increasing g on [0, high] with g(high) > 0, to the scalar's last bits: 60 halvings, no other exit.
+// Root of g, or the lower end of an epsilon around it, on [0, high], where g changes sign once, from <= 0 to g(high) > 0. False
+// position with the stale end's value reduced [anderson1973]; halving where that has not halved the bracket in four
+// steps, or where g is 0 at the lower end, as it may be at 0 itself. At most 240 steps.
 template <Real S, class G>
-[[nodiscard]] S bisect(S high, const G& g) noexcept {
-  S low = S(0);
-  for (int i = 0; i < 60; ++i) {
-    const S middle = low + (high - low) / S(2);
-    (g(middle) > S(0) ? high : low) = middle;
+[[nodiscard]] S root_below(S high, const G& g) noexcept {
+  constexpr S epsilon = std::numeric_limits<S>::epsilon();
+  S low = S(0), at_low = g(S(0)), at_high = g(high), goal = high;  // goal: what the bracket must be below
+  S least = epsilon;  // of high: distance from the ends, so that the bracket closes on both sides
+  int stale = 0;
+  bool last_was_high = false;
+  for (int i = 0; i < 240 && high - low > epsilon * high; ++i) {
+    const S width = high - low;
+    stale = width <= goal ? 0 : stale + 1;
+    if (stale == 0) goal = width / S(2);
+    S x = low + width / S(2);
+    if (at_low < S(0) && stale < 4) {
+      const S off = (std::min)(least * high, width / S(2));
+      x = std::clamp(high - at_high / (at_high - at_low) * width, low + off, high - off);
+    }
+    const S value = g(x);
+    if (value == S(0)) return x;
+    const bool is_high = value > S(0);
+    S& replaced = is_high ? at_high : at_low;
+    if (i > 0 && is_high == last_was_high) {
+      const S reduced = S(1) - value / replaced;
+      (is_high ? at_low : at_high) *= reduced > S(0) ? reduced : S(0.5);
+      least *= S(8);
+    } else {
+      least = epsilon;
+    }
+    last_was_high = is_high;
+    replaced = value;
+    (is_high ? high : low) = x;
   }
   return low;
 }
@@ -88,7 +114,7 @@ struct Radial {
     // The ratio law(|D|)/|D| lies between its values at depth and at |D|; doubling finds an upper end.
     S high = (std::max)(law.depth(f), depth);
     for (int i = 0; i < 60 && force(law, depth, S(0), high).tangential < f; ++i) high *= S(2);
-    return detail::bisect(high, [&](S t) { return force(law, depth, S(0), t).tangential - f; });
+    return detail::root_below(high, [&](S t) { return force(law, depth, S(0), t).tangential - f; });
   }
   template <ForceLaw L, class Limit, Real S = typename L::Scalar>
   [[nodiscard]] static S admissible(const L& law, S depth, S normal_force, S trial, const Limit& limit) noexcept {
@@ -96,7 +122,7 @@ struct Radial {
       const SkewedForce<S> f = force(law, depth, normal_force, t);
       return f.tangential - limit(f.normal);
     };
-    return excess(trial) > S(0) ? detail::bisect(trial, excess) : trial;
+    return excess(trial) > S(0) ? detail::root_below(trial, excess) : trial;
   }
   template <ForceLaw L, Real S = typename L::Scalar>
   [[nodiscard]] static S energy(const L& law, S depth, S stretch) noexcept {
@@ -124,7 +150,7 @@ struct SlipState {
     const auto one = [&](S t) { return Skew::force(law, depth, S(0), t).tangential; };
     const auto excess = [&](S t) { return force * Skew::energy(law, depth, t) - energy * one(t); };
     S stretch = Skew::stretch(law, depth, force);
-    if (excess(stretch) > S(0)) stretch = detail::bisect(stretch, excess);
+    if (excess(stretch) > S(0)) stretch = detail::root_below(stretch, excess);
     springs = one(stretch) > S(0) ? (std::max)(force / one(stretch), S(1)) : S(1);
     return stretch;
   }

@@ -23,13 +23,14 @@ struct ContactNear {
   Vec3<float> place, m;        ///< m: unit normal into the body
   Vec3<float> along;           ///< tangential part of the force / (4 pi mu)
   Vec3<float> tilt;            ///< moment of tilt / (4 pi mu)
+  Vec3<float> turn;            ///< slope at the patch's edge that is taken back outside, times s^-7
   Vec3<float> push;            ///< taken back outside the patch, times s^-8
   float normal = 0;            ///< normal part of the force / (4 pi mu)
   float dipole = 0;            ///< radial double force / (4 pi mu)
   float radial = 0, sink = 0;  ///< k_r d_n^2 / a, k_n d_n^2 / a
   float rim2 = 1;              ///< e^2
   float a = 1, nu = 0.5f;
-  bool second = false;  ///< any term of second order
+  bool second = false;  ///< any load beside the force
   bool tilted = false;  ///< tilt is not zero
   bool ball = false;    ///< Hertz's weight
 
@@ -37,6 +38,7 @@ struct ContactNear {
   void scale(float share) noexcept {
     along *= share;
     tilt *= share;
+    turn *= share;
     push *= share;
     for (float* part : {&normal, &dipole, &radial, &sink}) *part *= share;
   }
@@ -74,9 +76,8 @@ struct ContactNear {
       const Lane tp = px * tilt.x() + py * tilt.y() + pz * tilt.z();
       const auto t = disc.tilt(tp, nu);
       in_plane += t.in_plane;
-      // The patch itself does not turn: what the disc does at its edge is taken back, as the push is.
-      const float turned = 1.5f * std::numbers::pi_v<float> * (1.f - nu) / (a * a * a);
-      down += t.normal - back * turned * near2.sqrt() * tp;
+      // The patch itself does not turn: what second order does at its edge is taken back, as the push is.
+      down += t.normal - back * near2.sqrt() * (px * turn.x() + py * turn.y() + pz * turn.z());
       out.x += t.along * tilt.x();
       out.y += t.along * tilt.y();
       out.z += t.along * tilt.z();

@@ -12,16 +12,28 @@
 /// | q, w_2 | second order in depth (SecondOrder): universal forces, the body's answer | m^2, m |
 ///
 /// The displacement of patch i by the force on patch j, averaged over i, is that of a disc with the square sum of the radii:
-/// exact to second moments, and never singular when patches meet. Should the system not be positive definite all the
-/// same, the coupling is reduced until it is.
+/// exact to second moments, and never singular when patches meet. Where the solve mesh does not resolve the body, a mode of
+/// the system may give way too little or even pull: it is held at a tenth of the half-space's smaller compliance (coupled
+/// contacts: a twentieth), continuously (held_compliance.hpp).
 
 #include <palpate/beam/cholesky.hpp>
 #include <palpate/core/fixed_vector.hpp>
 #include <palpate/response/contact_near.hpp>
 #include <palpate/response/contact_types.hpp>
+#include <palpate/response/held_compliance.hpp>
 #include <palpate/response/response_field.hpp>
 
+#include <algorithm>
+#include <limits>
+
 namespace palpate::detail {
+
+/// Solved nodes that share a contact's force.
+struct PatchWeight {
+  std::uint32_t node;
+  double weight;
+};
+constexpr std::size_t place_nodes = 3 * TouchMesh::most_parts;
 
 /// One contact placed and solved.
 struct PlacedContact {
@@ -30,21 +42,19 @@ struct PlacedContact {
   double least = 0;  ///< smaller compliance of the half-space, times mu
   double ball = 0;   ///< radius of the sphere; 0: stuck patch
   TouchPlace place;
-  double share = 1;         ///< of w that counts
-  PatchTable::Level level;  ///< of the radius
-  Mat3<double> w, C;        ///< correction and sum, times mu
+  FixedVector<PatchWeight, place_nodes> nodes;  ///< solved ones at the place
+  double carried = 1;                           ///< of the force, not by what is held
+  double share = 1;                             ///< of w that counts
+  PatchTable::Level level;                      ///< of the radius
+  Mat3<double> w, C, S;                         ///< correction, sum, times mu; the sum's inverse
   Vec3<double> rhs;
-  Vec3<double> P = Vec3<double>::Zero();  ///< force / mu
-  double dipole = 0, dn2 = 0;             ///< / mu
-  Vec3<double> tilt = Vec3<double>::Zero(), push = Vec3<double>::Zero();
+  Vec3<double> P = Vec3<double>::Zero();      ///< force / mu
+  Vec3<double> extra = Vec3<double>::Zero();  ///< force / mu that the tool feels and the field does not
+  double dipole = 0, dn2 = 0;                 ///< / mu
+  Vec3<double> tilt = Vec3<double>::Zero();   ///< / mu
+  Vec3<double> turn = Vec3<double>::Zero();   ///< its part of second order
+  Vec3<double> push = Vec3<double>::Zero();
 };
-
-/// Nodes that share a contact's force.
-struct PatchWeight {
-  std::uint32_t node;
-  double weight;
-};
-using PatchNodes = FixedVector<PatchWeight, 36>;  // twelve points, three nodes each
 
 template <std::size_t Capacity>
 class ContactSystem {
@@ -54,15 +64,16 @@ class ContactSystem {
     bool second_order = true;
     SecondOrder constants = {};
   };
-  ContactSystem(const ResponseField& field, const Settings& settings) : field_(&field), settings_(settings) {}
+  ContactSystem(const ResponseField& field, const Settings& settings) : field_(&field), settings_(settings) {
+    settings_.constants = settings.constants.at(field.nu());
+  }
 
   [[nodiscard]] Contact& operator[](std::size_t c) noexcept { return contact_[c]; }
   [[nodiscard]] const Contact& operator[](std::size_t c) const noexcept { return contact_[c]; }
 
-  /// P of the first `count` contacts, all located: first by the linear part; its forces give the loads of second order.
+  /// P of the first `count` contacts, all located: first by the forces alone; they give the further loads.
   void solve(std::size_t count) noexcept {
     solve_once(count);
-    if (!settings_.second_order) return;
     bool any = false;
     for (std::size_t i = 0; i < count; ++i) {
       press(contact_[i]);
@@ -74,25 +85,43 @@ class ContactSystem {
   void locate(Contact& c) const noexcept {
     c.dipole = c.dn2 = 0;
     c.tilt.setZero();
+    c.turn.setZero();
     c.push.setZero();
+    c.extra.setZero();
     c.place = field_->touch().locate(c.x);
+    c.nodes.clear();
+    add_place(c.nodes, c.place, 1);
     const double size = mean_size(c);
     c.level = field_->table().level(averaged(c, size));
-    // Far from any touchable place, deep inside the fixed region, the nearest place may jump; there w has faded away. On an
-    // edge, a quarter of the size away, it is 0.996 of w.
+    // Far from the surface the nearest place may jump; there w has faded away.
     const double far2 = c.place.distance2 / (size * size);
     c.share = 1 / (1 + far2 * far2);
+    double sum = 0;
+    for (const PatchWeight& w : c.nodes) sum += w.weight;
+    c.carried = 1 - c.share * (std::max)(1 - sum, 0.0);
     c.w = c.share * c.share * field_->table().own(c.place.triangle, c.place.weight, c.level);
     const DiscCompliance near = disc_compliance(c.a, field_->nu());
     c.C = c.w + (near.normal - near.along) * (c.m * c.m.transpose());
     c.C.diagonal().array() += near.along;
     c.least = (std::min)(near.normal, near.along);
+    if (!is_above(c.C, one_mode * c.least)) {
+      c.w -= c.C;
+      hold_above(c.C, one_mode * c.least);
+      c.w += c.C;
+    }
+    c.S = c.C.inverse();
     c.rhs = c.d;
   }
 
-  // More than half of d: the series in depth has ended there. Less: (1 + r^8)^(-1/8) is 1.
+  // More than half of d, or of the force: the series in depth has ended there. Less: (1 + r^8)^(-1/8) is 1.
   [[nodiscard]] static double kept(const Vec3<double>& second, const Contact& c) noexcept {
-    const double r2 = second.squaredNorm() / (0.25 * c.d.squaredNorm()), r8 = r2 * r2 * r2 * r2;
+    return fading(second.squaredNorm(), c.d.squaredNorm());
+  }
+  [[nodiscard]] static double kept_of_force(const Vec3<double>& second, const Contact& c) noexcept {
+    return fading((c.S * second).squaredNorm(), c.P.squaredNorm());
+  }
+  [[nodiscard]] static double fading(double second2, double first2) noexcept {
+    const double r2 = second2 / (0.25 * first2 + (std::numeric_limits<double>::min)()), r8 = r2 * r2 * r2 * r2;
     return 1 / std::sqrt(std::sqrt(std::sqrt(1 + r8)));
   }
   // Size of the nodes around the contact's place, interpolated.
@@ -106,29 +135,52 @@ class ContactSystem {
   [[nodiscard]] static double averaged(const Contact& c, double size) noexcept {
     return c.a * c.a - 0.25 * size * size;
   }
-  // Nodes that share the force.
-  void find_patch(const Contact& c, PatchNodes& patch) const noexcept {
-    patch.clear();
-    const auto add = [&patch](const TouchPlace& p, double share) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        const double weight = share * p.weight[Eigen::Index(i)];
-        const auto same = std::find_if(patch.begin(), patch.end(),
-                                       [&](const PatchWeight& w) { return w.node == p.node[i]; });
-        if (same != patch.end())
-          same->weight += weight;
-        else
-          patch.push_back({p.node[i], weight});
-      }
+  // Adds the solved nodes of a place.
+  template <class List>
+  void add_place(List& list, const TouchPlace& p, double share) const noexcept {
+    const TouchMesh& touch = field_->touch();
+    const auto add = [&list](std::uint32_t node, double weight) {
+      const auto same =
+          std::find_if(list.begin(), list.end(), [node](const PatchWeight& w) { return w.node == node; });
+      if (same != list.end())
+        same->weight += weight;
+      else
+        list.push_back({node, weight});
     };
-    const double wide2 = averaged(c, mean_size(c));
-    if (!(wide2 > 0)) return add(c.place, c.share);
-    const double s = std::sqrt(wide2);
-    const Vec3<double> t1 = perpendicular(c.m), t2 = c.m.cross(t1);
-    for (const auto& p : disc_points())
-      add(field_->touch().locate(c.x + s * (p[0] * t1 + p[1] * t2)), c.share / double(disc_points().size()));
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double weight = share * p.weight[Eigen::Index(i)];
+      if (p.node[i] < touch.solved())
+        add(p.node[i], weight);
+      else
+        for (const TouchMesh::Share& s : touch.shares(p.node[i])) add(s.node, weight * double(s.weight));
+    }
+  }
+  // Nodes that share the force: the spreads of the place's nodes (PatchTable), added up in `weight`, one number per solved
+  // node, all 0 and left so by the caller. Continuous, which points of the patch's plane laid onto the surface are not: off
+  // it, their nearest places jump from sheet to sheet. Returns what is carried.
+  [[nodiscard]] double find_patch(const Contact& c, float* weight,
+                                  std::vector<std::uint32_t>& nodes) const noexcept {
+    nodes.clear();
+    // Interpolated twice, over the place's triangle and over those that the spreads lie on: a quarter of size^2 each time.
+    const double size = mean_size(c);
+    const PatchTable::Level level = field_->table().level(c.a * c.a - 0.5 * size * size);
+    double sum = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t l = 0; l < 2; ++l) {
+        const double part =
+            c.share * c.place.weight[Eigen::Index(i)] * (l == 0 ? 1 - level.part : level.part);
+        for (const TouchMesh::Share& s : field_->table().spread(c.place.node[i], level.below + l)) {
+          const double w = part * double(s.weight);
+          if (!(w > 1e-12)) continue;  // so that a node in the list has a weight
+          if (weight[s.node] == 0) nodes.push_back(s.node);
+          weight[s.node] += static_cast<float>(w);
+          sum += w;
+        }
+      }
+    return 1 - (std::max)(c.share - sum, 0.0);
   }
 
-  // Double force and tilts as touchable node k has them.
+  // Double force and tilts as node k has them.
   [[nodiscard]] Vec3<double> second_loads(const Contact& c, std::uint32_t k) const noexcept {
     const Vec3<double>& n = field_->touch().nodes()[k].normal;
     const Vec3<double> t1 = perpendicular(n);
@@ -139,15 +191,18 @@ class ContactSystem {
   [[nodiscard]] ContactNear near_of(const Contact& c) const noexcept {
     constexpr double scale = 1 / (4 * std::numbers::pi);
     const double pushed = c.P.dot(c.m), nu = field_->nu();
-    // At the rim the double force's disc moves -dipole (2 - 2 nu) 3 / (32 a^2); the near term takes it back.
+    // At the rim the double force's disc moves -dipole (2 - 2 nu) 3 / (32 a^2); the near term takes it back. (At nu = 0 there
+    // is nothing to take back.)
     const double per_depth = 1 / (c.a * disc_compliance(c.a, nu).normal);
-    const double rim = settings_.constants.radial * 16 / (3 * per_depth * (2 - 2 * nu)) * std::numbers::pi;
+    const double moved = (std::max)(outward(), 0.01) * per_depth * (2 - 2 * nu);
+    const double rim = settings_.constants.radial * 16 / (3 * moved) * std::numbers::pi;
     ContactNear near;
     near.place = c.x.template cast<float>();
     near.m = c.m.template cast<float>();
     near.along = (scale * (c.P - pushed * c.m)).template cast<float>();
     near.normal = static_cast<float>(scale * pushed);
     near.tilt = (scale * c.tilt).template cast<float>();
+    near.turn = (0.375 * (1 - nu) / (c.a * c.a * c.a) * c.turn).template cast<float>();
     near.push = c.push.template cast<float>();
     near.dipole = static_cast<float>(scale * c.dipole);
     near.radial = static_cast<float>(settings_.constants.radial * c.dn2 / c.a);
@@ -155,7 +210,7 @@ class ContactSystem {
     near.rim2 = static_cast<float>(rim * rim);
     near.a = static_cast<float>(c.a);
     near.nu = static_cast<float>(nu);
-    near.second = settings_.second_order && !(c.ball > 0);
+    near.second = c.dipole != 0;
     near.tilted = c.tilt.squaredNorm() > 0;
     near.ball = c.ball > 0;
     return near;
@@ -174,34 +229,30 @@ class ContactSystem {
       for (std::size_t j = 0; j < count; ++j)
         if (i != j) contact_[i].rhs -= second_order(contact_[i], contact_[j]);
     }
-    // The coupling times `share`, the diagonal less what one contact is sure to have.
-    const auto scaled = [&](double share, double less) {
-      System s = system;
-      for (std::size_t r = 0; r < n; ++r)
-        for (std::size_t c = 0; c <= r; ++c)
-          s.at(r, c) =
-              (r / 3 == c / 3 ? 1 : share) * s.at(r, c) - (r == c ? less * contact_[r / 3].least : 0);
-      for (std::size_t i = 0; i < n; ++i) s.b[i] = contact_[i / 3].rhs[Eigen::Index(i % 3)];
-      return s;
-    };
-    constexpr double sure = 0.05;  // PatchTable: 0.06
-    double share = 1;
-    System solved = scaled(share, sure);
-    if (!solved.solve(n)) {
-      double low = 0;
-      for (int step = 0; step < 10; ++step) {
-        const double middle = 0.5 * (low + share);
-        solved = scaled(middle, sure);
-        (solved.solve(n) ? low : share) = middle;
-      }
-      share = low;
-    }
-    solved = scaled(share, 0);
-    const bool ok = solved.solve(n);
+    for (std::size_t i = 0; i < n; ++i) system.b[i] = contact_[i / 3].rhs[Eigen::Index(i % 3)];
+    System test = system;
+    for (std::size_t i = 0; i < n; ++i) test.at(i, i) -= coupled_mode * contact_[i / 3].least;
+    if (!test.solve(n)) hold(system, n);
+    const bool ok = system.solve(n);
     for (std::size_t i = 0; i < count; ++i) {
       contact_[i].P.setZero();
-      if (ok) contact_[i].P << solved.b[3 * i], solved.b[3 * i + 1], solved.b[3 * i + 2];
+      if (ok) contact_[i].P << system.b[3 * i], system.b[3 * i + 1], system.b[3 * i + 2];
     }
+  }
+  // In units of each contact's least compliance.
+  template <class System>
+  void hold(System& system, std::size_t n) const noexcept {
+    using Square = Eigen::Matrix<double, 3 * int(Capacity), 3 * int(Capacity)>;
+    Square C = Square::Identity();  // beyond n
+    const auto unit = [this](std::size_t r, std::size_t c) {
+      return std::sqrt(contact_[r / 3].least * contact_[c / 3].least);
+    };
+    for (std::size_t r = 0; r < n; ++r)
+      for (std::size_t c = 0; c < n; ++c)
+        C(Eigen::Index(r), Eigen::Index(c)) = system.at((std::max)(r, c), (std::min)(r, c)) / unit(r, c);
+    hold_above(C, coupled_mode);
+    for (std::size_t r = 0; r < n; ++r)
+      for (std::size_t c = 0; c <= r; ++c) system.at(r, c) = C(Eigen::Index(r), Eigen::Index(c)) * unit(r, c);
   }
   template <class System>
   static void put(System& system, std::size_t i, std::size_t j, const Mat3<double>& block) noexcept {
@@ -220,14 +271,12 @@ class ContactSystem {
       const double fn = cj.m[l];
       const Vec3<double> t = Vec3<double>::Unit(l) - fn * cj.m;
       const auto u = disc.flat(fn, t.dot(p), nu);
-      out.col(l) = scale * (u.in_plane * p + u.normal * cj.m + u.along * t);
+      out.col(l) = ci.carried * cj.carried * scale * (u.in_plane * p + u.normal * cj.m + u.along * t);
     }
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t j = 0; j < 3; ++j) {
-        const double g =
-            ci.share * cj.share * ci.place.weight[Eigen::Index(i)] * cj.place.weight[Eigen::Index(j)];
-        for (std::size_t l = 0; l < 3; ++l)
-          out.col(Eigen::Index(l)) += g * field_->at(ci.place.node[i], cj.place.node[j], l);
+    for (const PatchWeight& i : ci.nodes)
+      for (const PatchWeight& j : cj.nodes) {
+        const double g = ci.share * cj.share * i.weight * j.weight;
+        for (std::size_t l = 0; l < 3; ++l) out.col(Eigen::Index(l)) += g * field_->at(i.node, j.node, l);
       }
     return out;
   }
@@ -242,22 +291,27 @@ class ContactSystem {
     out = ((cj.dipole * d.in_plane + t.in_plane) * p + (cj.dipole * d.normal + t.normal) * cj.m +
            t.along * cj.tilt) /
           (4 * std::numbers::pi);
-    for (std::size_t j = 0; j < 3; ++j) {
-      const Vec3<double> load =
-          ci.share * cj.share * cj.place.weight[Eigen::Index(j)] * second_loads(cj, cj.place.node[j]);
-      for (std::size_t i = 0; i < 3; ++i)
+    out *= ci.carried * cj.carried;
+    for (const PatchWeight& j : cj.nodes) {
+      const Vec3<double> load = ci.share * cj.share * j.weight * second_loads(cj, j.node);
+      for (const PatchWeight& i : ci.nodes)
         for (std::size_t l = 0; l < 3; ++l)
-          out += ci.place.weight[Eigen::Index(i)] * load[Eigen::Index(l)] *
-                 field_->at(ci.place.node[i], cj.place.node[j], 3 + l);
+          out += i.weight * load[Eigen::Index(l)] * field_->at(i.node, j.node, 3 + l);
     }
     return kept(out, cj) * out;
   }
-  // Loads of second order by a solved contact, and the body's answer. The load has moved with the tool: far away that is the
-  // moment of the force F by the way d. Near by, a factor of d_n is the local indentation delta_n = C_near P, which is
-  // less where the body as a whole gives way.
+  // A double force along the normal, where there is no traction, works on the strain there: -nu / (1 - nu) of the
+  // surface's. It acts like a radial one of that share.
+  [[nodiscard]] double outward() const noexcept { return field_->nu() / (1 - field_->nu()); }
+
+  // Loads of a solved contact beside its force. Linear: for nu < 1/2 a disc under a force spreads and turns by itself; stuck, it
+  // is kept from it, in the mean that the loads' energy knows.
+  // Second order: the load has moved with the tool; far away that is the moment of the force F by the way d. Near by, a
+  // factor of d_n is the local indentation delta_n = C_near P, which is less where the body as a whole gives way.
   void press(Contact& c) const noexcept {
     const SecondOrder& k = settings_.constants;
-    const DiscCompliance near = disc_compliance(c.a, field_->nu());
+    const double nu = field_->nu(), stuck = c.a * (1 - 2 * nu) / (std::numbers::pi * (1 - nu));
+    const DiscCompliance near = disc_compliance(c.a, nu);
     const double depth = c.d.dot(c.m), held = std::clamp(depth, -2 * c.a, 2 * c.a);
     const Vec3<double> dt = c.d - depth * c.m;
     // No force above the half-space's for d: where the body is far stiffer, the series in depth has nothing to say.
@@ -266,30 +320,54 @@ class ContactSystem {
     const double most = c.d.norm(), length = indentation.norm();
     const Vec3<double> P = length > most ? Vec3<double>(most / length * c.P) : c.P;
     const double pushed = P.dot(c.m), indented = near.normal * pushed;
-    c.dn2 = indented * held;
-    c.dipole = -pushed * held;
-    c.tilt = pushed * dt - held * (P - pushed * c.m);
-    c.push = near.along * k.drag * indented * dt - near.normal * k.softening * c.dn2 * c.m;
-    if (c.dipole == 0) return;
-    Vec3<double> second = c.push;
+    const Vec3<double> dragged = P - pushed * c.m;
+    // Rows: w at the patch by a unit double force; by a unit tilt along each axis.
+    Vec3<double> radial = Vec3<double>::Zero();
+    Mat3<double> tilting = Mat3<double>::Zero();
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t node = c.place.node[i];
-      second -= c.share * c.share * c.place.weight[Eigen::Index(i)] *
-                field_->table().second(node, second_loads(c, node), c.level);
+      const Mat3<double> mean =
+          c.share * c.share * c.place.weight[Eigen::Index(i)] * field_->table().second(node, c.level);
+      const Vec3<double>& n = field_->touch().nodes()[node].normal;
+      const Vec3<double> t1 = perpendicular(n);
+      radial += mean.col(0);
+      tilting += t1 * mean.col(1).transpose() + n.cross(t1) * mean.col(2).transpose();
     }
-    const double share = kept(second, c);
-    c.dipole *= share;
+    c.dipole = stuck * pushed;
+    c.tilt = -0.5 * stuck * dragged;
+    const Vec3<double> spread = c.dipole * radial + tilting.transpose() * c.tilt;
+    const double resolved = kept(spread, c);
+    c.dipole *= resolved;
+    c.tilt *= resolved;
+    c.rhs -= resolved * spread;
+    if (!settings_.second_order) return;
+    const double dipole = -outward() * pushed * held;
+    c.dn2 = indented * held;
+    c.turn = k.slide * pushed * dt - held * dragged;
+    c.push = near.along * k.drag * indented * dt - near.normal * k.softening * c.dn2 * c.m;
+    const Vec3<double> second = c.push - dipole * radial - tilting.transpose() * c.turn;
+    const double share = kept(second, c) * kept_of_force(second, c);
     c.dn2 *= share;
-    c.tilt *= share;
+    c.turn *= share;
     c.push *= share;
+    c.dipole += share * dipole;
+    c.tilt += c.turn;
     c.rhs += share * second;
+    // The energy of third degree in P is -D e, with e the surface's strain by w under the patch (by reciprocity radial . P) and
+    // D = -outward delta_n P_n. D as a load is its derivative by e; that by P_n, twice as much, is felt by the tool only.
+    const Vec3<double> stiffer = 2 * outward() * indented * radial.dot(P) * c.m;
+    const Vec3<double> twice = 2 * stiffer;  // so that it is at most a quarter of d, and of the force
+    c.extra = c.S * (kept(twice, c) * kept_of_force(twice, c) * stiffer);
   }
   void solve_once(std::size_t count) noexcept {
     if (count == 1)
-      contact_[0].P = contact_[0].C.inverse() * contact_[0].rhs;
+      contact_[0].P = contact_[0].S * contact_[0].rhs;
     else if (count > 1)
       solve_coupled(count);
   }
+
+  // Least compliance of a mode, of the half-space's.
+  static constexpr double one_mode = 0.1, coupled_mode = 0.05;
 
   const ResponseField* field_;
   Settings settings_;

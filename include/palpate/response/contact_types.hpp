@@ -38,15 +38,24 @@ struct SphereContact {
   S depth = S(0);                     ///< [m]; <= 0: no contact
 };
 
-/// Constants of second order in depth, for a stuck patch on nearly incompressible rubber (neo-Hookean, nu = 0.49).
-/// Fitted on one normal push on a cube and one skew push on an ellipsoid, rounded, used for every body; depth <= 2 a.
+/// Constants of second order in depth, for a stuck patch on neo-Hookean rubber; depth <= 2 a. They are those of nu = 1/2;
+/// `at(nu)` is what is used, below 0.3 that of 0.3. Fitted at nu = 0.49 on a normal and a skew push on a cube and two
+/// ellipsoids, their change with nu on one normal and one skew push at 0.3, rounded, used for every body
+/// (docs/accuracy.md).
 /// delta_n: local indentation, the normal displacement of a half-space by the same force. Without constants: the radial
-/// double force -F_n d_n and the moment of tilt F_n d_t - F_t d_n, by which the load has moved.
+/// double force -nu / (1 - nu) F_n d_n and the moment of tilt -F_t d_n, by which the load has moved, and the force by which a
+/// body that spreads under the patch stiffens.
 struct SecondOrder {
-  double radial = 0.18;    ///< near term along the surface, times delta_n d_n / a
-  double sink = 0.36;      ///< near term along the normal, likewise
-  double drag = 0.3;       ///< tangential force drag mu delta_n d_t
-  double softening = 0.3;  ///< normal force -softening mu delta_n d_n
+  double radial = 0.19;     ///< near term along the surface, times delta_n d_n / a; times (2 nu)^3
+  double sink = 0.36;       ///< near term along the normal, likewise; the same for every nu
+  double slide = 0.7;       ///< moment of tilt slide F_n d_t; the same for every nu
+  double drag = 0.28;       ///< tangential force drag mu delta_n d_t; times 1 + 5 b, b = 1 - 2 nu
+  double softening = 0.36;  ///< normal force -softening mu delta_n d_n; times 1 - 2.5 b
+
+  [[nodiscard]] SecondOrder at(double nu) const noexcept {
+    const double held = nu > 0.3 ? nu : 0.3, b = 1 - 2 * held;
+    return {8 * held * held * held * radial, sink, slide, (1 + 5 * b) * drag, (1 - 2.5 * b) * softening};
+  }
 };
 
 }  // namespace palpate

@@ -7,8 +7,6 @@
 #include <palpate/response/parallel.hpp>
 #include <palpate/response/touch_mesh.hpp>
 
-#include <Eigen/Eigenvalues>
-
 namespace palpate {
 
 /// mu w averaged over a patch whose load is spread over it in the same way, mu = 1:
@@ -23,9 +21,6 @@ namespace palpate {
 /// |--------|------------------------------------------------------------------|------|
 /// | s      | radius over which the table averages: s^2 = a^2 - (size / 2)^2   | m    |
 /// | a      | radius of the patch; size: mean edge length around               | m    |
-///
-/// Held so that the half-space's compliance plus w never falls below a tenth of the half-space's (0.06 between the
-/// radii): a wide patch on a layer thinner than the solve mesh resolves is then too soft, but no force ever jumps.
 class PatchTable {
  public:
   struct Own {
@@ -37,16 +32,22 @@ class PatchTable {
     float mean
         [9];  ///< of the unit radial double force and the unit tilts along the node's two tangents [1/m^2]
   };
-  static constexpr double least = 0.1;
+  using Share = TouchMesh::Share;
 
   PatchTable() = default;
-  PatchTable(const TouchMesh& touch, std::vector<Own> own, std::vector<Second> second, std::size_t levels)
-      : unit_(unit(touch)), levels_(levels), own_(std::move(own)), second_(std::move(second)) {}
+  PatchTable(const TouchMesh& touch, std::vector<Own> own, std::vector<Second> second, std::size_t levels,
+             std::vector<std::uint32_t> spread_begin, std::vector<Share> spread)
+      : unit_(unit(touch)),
+        levels_(levels),
+        own_(std::move(own)),
+        second_(std::move(second)),
+        spread_begin_(std::move(spread_begin)),
+        spread_(std::move(spread)) {}
 
   /// `column(k, l)` points to the field of load l (three forces, double force, two tilts) of node k: x of every vertex,
   /// y and z `stride` further each.
   template <class Column>
-  PatchTable(const SolveMesh& mesh, const TouchMesh& touch, double nu, unsigned threads, std::size_t stride,
+  PatchTable(const SolveMesh& mesh, const TouchMesh& touch, unsigned threads, std::size_t stride,
              const Column& column)
       : unit_(unit(touch)) {
     Vec3<double> low = mesh.vertices[0], high = low;
@@ -65,6 +66,7 @@ class PatchTable {
         for (int c = 0; c < 3; ++c)
           add(seen[i], at[w.node].vertex[std::size_t(c)], w.weight * at[w.node].weight[c]);
     });
+    for (const auto& list : loaded) keep_solved(touch, list);
     std::vector<std::vector<std::uint32_t>> around(n);  // triangles
     for (std::uint32_t t = 0; t < touch.triangles().size(); ++t)
       for (auto k : touch.triangles()[t]) around[k].push_back(t);
@@ -116,13 +118,10 @@ class PatchTable {
       }
     });
     for (std::size_t i = 0; i < own_.size(); ++i) {
-      double size = 0;
-      for (auto k : touch.triangles()[i / levels_]) size = (std::max)(size, touch.nodes()[k].size);
-      const DiscCompliance near = disc_compliance(std::sqrt(radius2(i % levels_) + 0.25 * size * size), nu);
       constexpr std::size_t pair_of[6][2] = {{0, 0}, {4, 4}, {8, 8}, {1, 3}, {5, 7}, {6, 2}};
       for (std::size_t p = 0; p < 6; ++p) {
         const Mat3<double> mean = 0.5 * (pairs[i][pair_of[p][0]] + pairs[i][pair_of[p][1]]);
-        const Mat3<double> w = (p < 3 ? 1 : 2) * held(0.5 * (mean + mean.transpose()), near);
+        const Mat3<double> w = (p < 3 ? 0.5 : 1.0) * (mean + mean.transpose());
         const double entry[6] = {w(0, 0), w(1, 1), w(2, 2), w(0, 1), w(1, 2), w(2, 0)};
         for (int e = 0; e < 6; ++e) own_[i].pair[p][e] = static_cast<float>(entry[e]);
       }
@@ -157,17 +156,24 @@ class PatchTable {
     out << w[0], w[3], w[5], w[3], w[1], w[4], w[5], w[4], w[2];
     return out;
   }
-  /// Q of node k for its double force and tilts.
-  [[nodiscard]] Vec3<double> second(std::size_t k, const Vec3<double>& loads,
-                                    const Level& at) const noexcept {
+  /// Q of node k, by column: its double force, its two tilts.
+  [[nodiscard]] Mat3<double> second(std::size_t k, const Level& at) const noexcept {
     using Nine = Eigen::Map<const Eigen::Matrix3f>;
     const Nine low(second_[k * levels_ + at.below].mean), high(second_[k * levels_ + at.below + 1].mean);
-    return (1 - at.part) * (low.cast<double>() * loads) + at.part * (high.cast<double>() * loads);
+    return (1 - at.part) * low.cast<double>() + at.part * high.cast<double>();
   }
+  /// Solved nodes that share a load that is spread over a patch of the radius of `level` around node k. What is missing from 1
+  /// falls on what is held.
+  [[nodiscard]] std::span<const Share> spread(std::size_t k, std::size_t level) const noexcept {
+    const std::size_t i = k * levels_ + level;
+    return {spread_.data() + spread_begin_[i], spread_begin_[i + 1] - spread_begin_[i]};
+  }
+  [[nodiscard]] const std::vector<std::uint32_t>& spread_begin() const noexcept { return spread_begin_; }
+  [[nodiscard]] const std::vector<Share>& all_spread() const noexcept { return spread_; }
   [[nodiscard]] const std::vector<Own>& own_rows() const noexcept { return own_; }
   [[nodiscard]] const std::vector<Second>& second_rows() const noexcept { return second_; }
   [[nodiscard]] std::size_t memory() const noexcept {
-    return own_.size() * sizeof(Own) + second_.size() * sizeof(Second);
+    return own_.size() * sizeof(Own) + second_.size() * sizeof(Second) + spread_.size() * sizeof(Share);
   }
 
  private:
@@ -209,12 +215,24 @@ class PatchTable {
       found->weight += weight;
   }
 
+  void keep_solved(const TouchMesh& touch, const std::vector<Weight>& list) {
+    std::vector<Weight> solved;
+    for (const Weight& w : list) {
+      if (w.node < touch.solved())
+        add(solved, w.node, w.weight);
+      else
+        for (const Share& s : touch.shares(w.node)) add(solved, s.node, w.weight * double(s.weight));
+    }
+    for (const Weight& w : solved)
+      if (w.weight > 0) spread_.push_back({w.node, static_cast<float>(w.weight)});
+    spread_begin_.push_back(static_cast<std::uint32_t>(spread_.size()));
+  }
+
   // Where each node's load acts, as a place of the solve mesh.
   [[nodiscard]] static std::vector<Vertices> places(const SolveMesh& mesh, const TouchMesh& touch) {
     std::vector<std::vector<std::uint32_t>> around(mesh.vertices.size());
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-      if (!mesh.fixed_triangle[t])
-        for (auto v : mesh.triangles[t]) around[v].push_back(t);
+      for (auto v : mesh.triangles[t]) around[v].push_back(t);
     std::vector<Vertices> at;
     for (const auto& node : touch.nodes()) {
       double best = (std::numeric_limits<double>::max)();
@@ -251,17 +269,12 @@ class PatchTable {
     return patch;
   }
 
-  [[nodiscard]] static Mat3<double> held(const Mat3<double>& own, const DiscCompliance& near) {
-    Eigen::SelfAdjointEigenSolver<Mat3<double>> eigen(own);
-    const double low = -(1 - least) * (std::min)(near.normal, near.along);
-    return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(low).asDiagonal() *
-           eigen.eigenvectors().transpose();
-  }
-
   double unit_ = 1;
   std::size_t levels_ = 2;
   std::vector<Own> own_;        // per triangle and level
   std::vector<Second> second_;  // per node and level
+  std::vector<std::uint32_t> spread_begin_{0};
+  std::vector<Share> spread_;
 };
 
 }  // namespace palpate

@@ -102,6 +102,17 @@ class NearSource {
 
 }  // namespace detail
 
+namespace detail {
+/// u_near at vertex v of a unit force along axis l at a node, mu = 1 [1/m]. At the node's own vertex the mean over a disc of
+/// half the edge length.
+[[nodiscard]] inline Vec3d near_at_vertex(const SolveMesh& m, const SolveMesh::Node& node, std::uint32_t v, int l, double nu) {
+  const Vec3d r = m.vertices[v] - node.source, e = Vec3d::Unit(l);
+  const bool own = r.norm() < 0.3 * node.size;
+  const Vec3d u = own ? disc_load(r, -node.normal, 0, 0.5 * node.size, e, nu) : point_load<double>(r, -node.normal, e, nu);
+  return u / (4 * std::numbers::pi);
+}
+}  // namespace detail
+
 /// Solves for every touchable node: those with a free triangle. `bem` must be factorised.
 [[nodiscard]] inline ResponseColumns solve_columns(const BoundaryElements& bem, double nu) {
   using detail::Matrix;
@@ -127,14 +138,8 @@ class NearSource {
       source.nodal(k, traction.middleCols<3>(3 * j));
       for (std::size_t f = 0; f < bem.fixed().size(); ++f) {
         const std::uint32_t v = bem.fixed()[f];
-        const Vec3<double> r = m.vertices[v] - s.source;
-        // The node's own vertex, on the rim: the mean over a disc of half the edge length.
-        const bool own = r.norm() < 0.3 * s.size;
-        for (int l = 0; l < 3; ++l) {
-          const Vec3<double> e = Vec3<double>::Unit(l);
-          const Vec3<double> u = own ? disc_load(r, -s.normal, 0, 0.5 * s.size, e, nu) : point_load<double>(r, -s.normal, e, nu);
-          held.block<3, 1>(3 * Eigen::Index(f), 3 * j + l) = u / (4 * std::numbers::pi);
-        }
+        for (int l = 0; l < 3; ++l)
+          held.block<3, 1>(3 * Eigen::Index(f), 3 * j + l) = detail::near_at_vertex(m, s, v, l, nu);
       }
     }
     auto columns = out.w.middleCols(3 * first, 3 * size);
@@ -149,13 +154,8 @@ class NearSource {
     const std::uint32_t v = bem.fixed()[f];
     for (Eigen::Index j = 0; j < count; ++j) {
       const SolveMesh::Node& s = m.nodes[out.touchable[std::size_t(j)]];
-      const Vec3<double> r = m.vertices[v] - s.source;
-      const bool own = r.norm() < 0.3 * s.size;
-      for (int l = 0; l < 3; ++l) {
-        const Vec3<double> e = Vec3<double>::Unit(l);
-        const Vec3<double> u = own ? disc_load(r, -s.normal, 0, 0.5 * s.size, e, nu) : point_load<double>(r, -s.normal, e, nu);
-        out.w.block<3, 1>(3 * Eigen::Index(v), 3 * j + l) = -u / (4 * std::numbers::pi);
-      }
+      for (int l = 0; l < 3; ++l)
+        out.w.block<3, 1>(3 * Eigen::Index(v), 3 * j + l) = -detail::near_at_vertex(m, s, v, l, nu);
     }
   }
   return out;

@@ -21,7 +21,10 @@ class ResponseTick {
         contact_(field, settings),
         total_(3 * field.stride(), 0.f),
         second_(3 * field.stride(), 0.f),
-        near_(Capacity * 3 * field.stride(), 0.f) {}
+        near_(Capacity * 3 * field.stride(), 0.f),
+        weight_(field.touch().solved(), 0.f) {
+    patch_.reserve(weight_.size());
+  }
 
   /// Forces that the tool exerts on the object, one per contact [N]. More than `Capacity` contacts: the surplus gets no
   /// force, region_overflow. A contact that is not finite, or whose radius or normal is absurd: no forces and no field
@@ -47,7 +50,8 @@ class ResponseTick {
     if (count_ == 0) return status;
     contact_.solve(count_);
     const double mu = field_->shear_modulus();
-    for (std::size_t c = 0; c < count_; ++c) forces[c] = (mu * contact_[c].P).template cast<S>();
+    for (std::size_t c = 0; c < count_; ++c)
+      forces[c] = (mu * (contact_[c].P + contact_[c].extra)).template cast<S>();
     return status | Status::contact;
   }
 
@@ -136,19 +140,20 @@ class ResponseTick {
     const auto size = static_cast<Eigen::Index>(total_.size());
     Eigen::Map<Eigen::ArrayXf> sum(total_.data(), size);
     sum.setZero();
-    detail::PatchNodes patch;
     for (std::size_t c = 0; c < count_; ++c) {
       const auto& k = contact_[c];
-      contact_.find_patch(k, patch);
+      const double carried = contact_.find_patch(k, weight_.data(), patch_);
       const auto column = [&](std::uint32_t node, std::size_t l) {
         return Row(field_->column(node, l), size);
       };
-      for (const detail::PatchWeight& w : patch) {
-        const Vec3<float> f = (w.weight * k.P).template cast<float>();
-        sum += f[0] * column(w.node, 0) + f[1] * column(w.node, 1) + f[2] * column(w.node, 2);
+      for (auto node : patch_) {
+        const Vec3<float> f = weight_[node] * k.P.template cast<float>();
+        sum += f[0] * column(node, 0) + f[1] * column(node, 1) + f[2] * column(node, 2);
       }
-      if (k.dipole != 0) add_second(k, patch);
-      const detail::ContactNear& near = near_field_[c] = contact_.near_of(k);
+      if (k.dipole != 0) add_second(k);
+      for (auto node : patch_) weight_[node] = 0;
+      detail::ContactNear& near = near_field_[c] = contact_.near_of(k);
+      if (carried < 1) near.scale(static_cast<float>(carried));
       float* own = &near_[c * 3 * n];
       for (std::size_t v = 0; v < n; v += lanes) {
         const Lane3 u = near({Lane::Map(field_->coordinate(0) + v), Lane::Map(field_->coordinate(1) + v),
@@ -187,14 +192,14 @@ class ResponseTick {
 
   // The body's answer to the loads of second order. Where the mesh does not resolve it, it can be any size: held to about
   // twice d.
-  void add_second(const detail::PlacedContact& c, const detail::PatchNodes& patch) noexcept {
+  void add_second(const detail::PlacedContact& c) noexcept {
     using Row = Eigen::Map<const Eigen::ArrayXf>;
     const auto n = static_cast<Eigen::Index>(field_->stride()), size = 3 * n;
     Eigen::Map<Eigen::ArrayXf> second(second_.data(), size);
     second.setZero();
-    for (const detail::PatchWeight& w : patch) {
-      const Vec3<float> g = (w.weight * contact_.second_loads(c, w.node)).template cast<float>();
-      const auto column = [&](std::size_t l) { return Row(field_->column(w.node, l), size); };
+    for (auto node : patch_) {
+      const Vec3<float> g = weight_[node] * contact_.second_loads(c, node).template cast<float>();
+      const auto column = [&](std::size_t l) { return Row(field_->column(node, l), size); };
       if (c.tilt.squaredNorm() > 0)
         second += g[0] * column(3) + g[1] * column(4) + g[2] * column(5);
       else
@@ -286,9 +291,11 @@ class ResponseTick {
   detail::ContactSystem<Capacity> contact_;
   std::array<detail::ContactNear, Capacity> near_field_{};
   std::size_t count_ = 0;
-  std::vector<float> total_;   // the field at the solve mesh's vertices, by coordinate
-  std::vector<float> second_;  // scratch
-  std::vector<float> near_;    // near field per contact, likewise
+  std::vector<float> total_;          // the field at the solve mesh's vertices, by coordinate
+  std::vector<float> second_;         // scratch
+  std::vector<float> near_;           // near field per contact, likewise
+  std::vector<float> weight_;         // per solved node: its part of a contact's force; 0 between uses
+  std::vector<std::uint32_t> patch_;  // nodes with a part; never more than reserved
 };
 
 }  // namespace palpate

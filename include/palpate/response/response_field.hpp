@@ -24,11 +24,15 @@ namespace palpate {
 struct ResponseParts {
   double E = 0, nu = 0;
   SolveMesh mesh;                                       ///< without nodes_of, middle and nodes
-  std::vector<SolveMesh::Node> nodes;                   ///< touchable ones
+  std::vector<SolveMesh::Node> nodes;                   ///< of the touch mesh
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< between them
+  std::vector<std::uint32_t> share_begin;               ///< see TouchMesh
+  std::vector<TouchMesh::Share> shares;
   std::vector<float> columns;
   std::vector<PatchTable::Own> own;
   std::vector<PatchTable::Second> second;
+  std::vector<std::uint32_t> spread_begin;  ///< see PatchTable
+  std::vector<TouchMesh::Share> spread;
 };
 
 class ResponseField {
@@ -40,7 +44,7 @@ class ResponseField {
     unsigned threads = 2;                       ///< at set-up only; see parallel.hpp for hosts without
     std::function<void(double)> progress = {};  ///< called in the calling thread with what is done, 0 to 1
   };
-  /// Fields per touchable node: unit forces along x, y, z; unit radial double force; unit tilts along its two tangents.
+  /// Fields per solved node of the touch mesh: unit forces along x, y, z; unit radial double force; unit tilts along its two tangents.
   static constexpr std::size_t loads = 6;
 
   /// `fixed` is true where the object is held; the mesh is cut along its boundary.
@@ -76,8 +80,10 @@ class ResponseField {
       : E_(parts.E), nu_(parts.nu), mesh_(std::move(parts.mesh)), columns_(std::move(parts.columns)) {
     stride_ = padded(mesh_.vertices.size());
     const std::size_t levels = parts.second.size() / parts.nodes.size();
-    touch_ = TouchMesh(std::move(parts.nodes), std::move(parts.triangles));
-    table_ = PatchTable(touch_, std::move(parts.own), std::move(parts.second), levels);
+    touch_ = TouchMesh(std::move(parts.nodes), std::move(parts.triangles), std::move(parts.share_begin),
+                       std::move(parts.shares));
+    table_ = PatchTable(touch_, std::move(parts.own), std::move(parts.second), levels,
+                        std::move(parts.spread_begin), std::move(parts.spread));
     place_vertices();
   }
   [[nodiscard]] ResponseParts parts() const {
@@ -86,9 +92,13 @@ class ResponseField {
             mesh_,
             touch_.nodes(),
             touch_.triangles(),
+            touch_.share_begin(),
+            touch_.all_shares(),
             columns_,
             table_.own_rows(),
-            table_.second_rows()};
+            table_.second_rows(),
+            table_.spread_begin(),
+            table_.all_spread()};
   }
 
   [[nodiscard]] double E() const noexcept { return E_; }
@@ -106,11 +116,11 @@ class ResponseField {
   [[nodiscard]] static constexpr std::size_t padded(std::size_t vertices) noexcept {
     return (vertices + 7) / 8 * 8;
   }
-  /// mu w of load l of touchable node k: x at every vertex, y and z `stride()` further each [1/m]; l >= 3: [1/m^2].
+  /// mu w of load l of solved node k: x at every vertex, y and z `stride()` further each [1/m]; l >= 3: [1/m^2].
   [[nodiscard]] const float* column(std::size_t k, std::size_t l) const noexcept {
     return &columns_[(loads * k + l) * 3 * stride_];
   }
-  /// The same at the vertex of touchable node i.
+  /// The same at the vertex of node i.
   [[nodiscard]] Vec3<double> at(std::size_t i, std::size_t k, std::size_t l) const noexcept {
     const float* c = column(k, l) + touch_.nodes()[i].vertex;
     return {double(c[0]), double(c[stride_]), double(c[2 * stride_])};
@@ -159,17 +169,23 @@ class ResponseField {
     touch_ = TouchMesh(mesh_);
     stride_ = padded(mesh_.vertices.size());
     columns_.resize(loads * 3 * stride_ * touch_.nodes().size(), 0.f);
-    for (std::size_t k = 0; k < touch_.nodes().size(); ++k)
+    for (std::uint32_t k = 0; k < touch_.solved_or_held(); ++k)
       for (std::size_t l = 0; l < 3; ++l) {
         float* out = &columns_[(loads * k + l) * 3 * stride_];
-        for (std::size_t v = 0; v < mesh_.vertices.size(); ++v)
-          for (std::size_t i = 0; i < 3; ++i)
-            out[i * stride_ + v] =
-                static_cast<float>(columns.w(Eigen::Index(3 * v + i), Eigen::Index(3 * k + l)));
+        for (std::uint32_t v = 0; v < mesh_.vertices.size(); ++v) {
+          const Vec3<double> w =
+              k < touch_.solved()
+                  ? Vec3<double>(columns.w.block<3, 1>(Eigen::Index(3 * v), Eigen::Index(3 * k + l)))
+                  : Vec3<double>(-detail::near_at_vertex(mesh_, touch_.nodes()[k], v, int(l), nu_));
+          for (std::size_t i = 0; i < 3; ++i) out[i * stride_ + v] = static_cast<float>(w[Eigen::Index(i)]);
+        }
       }
-    detail::parallel_for(touch_.nodes().size(), params.threads, [this](std::size_t k) { derive(k); });
-    table_ = PatchTable(mesh_, touch_, nu_, params.threads, stride_,
+    detail::parallel_for(touch_.solved_or_held(), params.threads, [this](std::size_t k) { derive(k); });
+    for (std::size_t k = touch_.solved_or_held(); k < touch_.nodes().size(); ++k) join(k);
+    table_ = PatchTable(mesh_, touch_, params.threads, stride_,
                         [this](std::size_t k, std::size_t l) { return column(k, l); });
+    columns_.resize(loads * 3 * stride_ * touch_.solved());
+    columns_.shrink_to_fit();
     place_vertices();
     report(1);
   }
@@ -186,6 +202,25 @@ class ResponseField {
         for (int i = 0; i < 3; ++i)
           sum += static_cast<float>(f[i]) * Row(column(w.node, std::size_t(i)), size);
       }
+    }
+  }
+
+  // An edge's node: the mean of its parts' loads.
+  void join(std::size_t k) {
+    using Row = Eigen::Map<const Eigen::ArrayXf>;
+    const auto size = static_cast<Eigen::Index>(3 * stride_);
+    const float share = 1.f / static_cast<float>(touch_.parts(k).size());
+    const Vec3<double> n = touch_.nodes()[k].normal, t1 = perpendicular(n), t2 = n.cross(t1);
+    const auto sum = [&](std::size_t l) {
+      return Eigen::Map<Eigen::ArrayXf>(&columns_[(loads * k + l) * 3 * stride_], size);
+    };
+    for (auto part : touch_.parts(k)) {
+      for (std::size_t l = 0; l < 4; ++l) sum(l) += share * Row(column(part, l), size);
+      const Vec3<double> pn = touch_.nodes()[part].normal, p1 = perpendicular(pn), p2 = pn.cross(p1);
+      sum(4) += share * (static_cast<float>(t1.dot(p1)) * Row(column(part, 4), size) +
+                         static_cast<float>(t1.dot(p2)) * Row(column(part, 5), size));
+      sum(5) += share * (static_cast<float>(t2.dot(p1)) * Row(column(part, 4), size) +
+                         static_cast<float>(t2.dot(p2)) * Row(column(part, 5), size));
     }
   }
 

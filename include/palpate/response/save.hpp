@@ -25,7 +25,7 @@
 
 namespace palpate {
 
-inline constexpr std::uint32_t saved_field_version = 1;
+inline constexpr std::uint32_t saved_field_version = 2;
 
 namespace detail {
 
@@ -130,8 +130,12 @@ class ByteReader {
                      n.crease ? 1u : 0u});
   body.put_list(nodes);
   body.put_list(parts.triangles);
+  body.put_list(parts.share_begin);
+  body.put_list(parts.shares);
   body.put_list(parts.own);
   body.put_list(parts.second);
+  body.put_list(parts.spread_begin);
+  body.put_list(parts.spread);
   body.put_list(parts.columns);
   const std::span<const std::byte> content =
       std::span<const std::byte>(body.bytes).subspan(detail::saved_head);
@@ -158,7 +162,7 @@ class ByteReader {
   std::memcpy(&size, bytes.data() + 16, 8);
   std::memcpy(&sum, bytes.data() + 24, 8);
   if (order != 0x01020304) fail(where, "saved on a machine with the other byte order");
-  if (version != saved_field_version) fail(where, "the format's version is not this library's 1", version);
+  if (version != saved_field_version) fail(where, "the format's version is not this library's 2", version);
   const std::span<const std::byte> content = bytes.subspan(detail::saved_head);
   if (content.size() != size)
     fail(where, "cut short or too long: bytes missing (more than there should be: < 0)",
@@ -175,8 +179,12 @@ class ByteReader {
   parts.mesh.fixed_triangle = in.get_list<std::uint8_t>();
   const auto nodes = in.get_list<detail::SavedNode>();
   parts.triangles = in.get_list<std::array<std::uint32_t, 3>>();
+  parts.share_begin = in.get_list<std::uint32_t>();
+  parts.shares = in.get_list<TouchMesh::Share>();
   parts.own = in.get_list<PatchTable::Own>();
   parts.second = in.get_list<PatchTable::Second>();
+  parts.spread_begin = in.get_list<std::uint32_t>();
+  parts.spread = in.get_list<TouchMesh::Share>();
   parts.columns = in.get_list<float>();
   // Contents: a bad number here would be read out of bounds in a tick.
   const auto require = [where](bool holds, const char* rule) {
@@ -191,12 +199,26 @@ class ByteReader {
   require(
       parts.mesh.fixed_vertex.size() == n && parts.mesh.fixed_triangle.size() == parts.mesh.triangles.size(),
       "the fixed lists' lengths are not the mesh's");
-  require(parts.columns.size() == ResponseField::loads * 3 * ResponseField::padded(n) * k,
+  const auto require_shares = [&](const std::vector<std::uint32_t>& begin,
+                                  const std::vector<TouchMesh::Share>& shares, std::size_t lists,
+                                  std::size_t most, std::size_t solved) {
+    bool good = begin.size() == lists + 1 && begin.front() == 0 && begin.back() == shares.size();
+    for (std::size_t i = 0; good && i < lists; ++i)
+      good = begin[i] <= begin[i + 1] && begin[i + 1] - begin[i] <= most;
+    for (std::size_t i = 0; good && i < shares.size(); ++i)
+      good = shares[i].node < solved && shares[i].weight >= 0 && shares[i].weight <= 1;
+    require(good, "the shares are not the nodes'");
+  };
+  const std::size_t unsolved = parts.share_begin.size() - 1, solved = k - unsolved;  // checked next
+  require(!parts.share_begin.empty() && unsolved < k, "the shares are not the nodes'");
+  require_shares(parts.share_begin, parts.shares, unsolved, TouchMesh::most_parts, solved);
+  require(parts.columns.size() == ResponseField::loads * 3 * ResponseField::padded(n) * solved,
           "the columns' length is not the mesh's");
   const std::size_t levels = parts.second.size() / k;
   require(parts.second.size() == levels * k && levels >= 2 && levels < 64 &&
               parts.own.size() == levels * parts.triangles.size(),
           "the tables' lengths are not the nodes'");
+  require_shares(parts.spread_begin, parts.spread, levels * k, k, solved);
   for (const auto& t : parts.mesh.triangles)
     for (auto v : t) require(v < n, "a triangle's corner is not a vertex");
   for (const auto& t : parts.triangles)

@@ -201,13 +201,21 @@ inline void require_each_piece_held(const MeshData<double>& mesh, const std::vec
     if (shift.norm() > limit) shift *= limit / shift.norm();
     for (int s = 0; s < 2; ++s) m.middle[d.triangle[s]][d.corner[s]] = 0.5 * (a + b) + shift;
   }
-  // Loads on a crease are drawn into the node's own part: there the tangent plane is known.
+  // Loads on a crease are drawn into the node's own part, where the tangent plane is known; no farther than its triangles.
+  std::vector<double> room(count, (std::numeric_limits<double>::max)());
+  for (std::uint32_t t = 0; t < m.triangles.size(); ++t)
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Vec3d &x = m.vertices[m.triangles[t][c]], &p = m.vertices[m.triangles[t][(c + 1) % 3]],
+                  &q = m.vertices[m.triangles[t][(c + 2) % 3]];
+      const double height = 2 * area_vector(x, p, q).norm() / (std::max)((q - p).norm(), 1e-300);
+      double& least = room[m.nodes_of[t][c]];
+      least = (std::min)(least, height);
+    }
   for (std::uint32_t k = 0; k < count; ++k) {
     SolveMesh::Node& node = m.nodes[k];
     if (!node.crease) continue;
     const Vec3d in = tangential(inward[k], node.normal);
-    const Vec3d target = node.source + 0.35 * node.size * unit_or(in, Vec3d(Vec3d::Zero()));
-    node.source = target;
+    node.source += (std::min)(0.35 * node.size, 0.45 * room[k]) * unit_or(in, Vec3d(Vec3d::Zero()));
   }
   return m;
 }

@@ -17,6 +17,7 @@
 #include <palpate/solver/force_map.hpp>
 #include <palpate/surface/concept.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -34,29 +35,21 @@ template <ContactSurface Object, ForceModel Force>
   return status;
 }
 
-/// Penetration of the first `count` of eight points, at once where the surface can; depth 0 for the others. How many touch.
+/// Penetration of the first `count` points of a leaf, at once where the surface can; depth 0 for the others. Does one touch?
 template <ContactSurface Object, Real S>
-inline std::uint32_t penetrate(const Object& object, const PointLanes<S>& x, std::uint32_t count,
-                               PenetrationLanes<S>& in) noexcept {
+[[nodiscard]] inline bool penetrate(const Object& object, const PointLanes<S>& x, std::uint32_t count,
+                                    PenetrationLanes<S>& in) noexcept {
   if constexpr (HasPenetrationLanes<Object>) {
     object.penetration(x, in);
   } else {
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const Penetration<S> one = object.penetration(Vec3<S>(x.x[i], x.y[i], x.z[i]));
-      in.depth[i] = one.depth;
-      in.gradient_x[i] = one.gradient.x();
-      in.gradient_y[i] = one.gradient.y();
-      in.gradient_z[i] = one.gradient.z();
-    }
+    penetrate_one_by_one(object, x, count, in);
   }
   for (std::uint32_t i = count; i < x.x.size(); ++i)
     in.depth[i] = in.gradient_x[i] = in.gradient_y[i] = in.gradient_z[i] = S(0);
-  std::uint32_t touching = 0;
-  for (const S depth : in.depth) touching += depth > S(0) ? 1u : 0u;
-  return touching;
+  return lane_array(in.depth).maxCoeff() > S(0);
 }
 
-/// Calls visit(begin, x, in) for every leaf of the tool with a point inside the surface: eight points from `begin` on, depth
+/// Calls visit(begin, x, in) for every leaf of the tool with a point inside the surface: `lane_count` points from `begin` on, depth
 /// <= 0 for those that do not touch.
 template <ContactSurface Object, Real S, class Visit>
 inline void for_each_touching_leaf(const ToolPoints<S>& tool, const Pose<S>& X, const Object& object,
@@ -64,7 +57,7 @@ inline void for_each_touching_leaf(const ToolPoints<S>& tool, const Pose<S>& X, 
   for_each_candidate_leaf(tool, X, object,
                           [&](std::uint32_t begin, std::uint32_t count, const PointLanes<S>& x) noexcept {
                             PenetrationLanes<S> in;
-                            if (penetrate(object, x, count, in) > 0) visit(begin, x, in);
+                            if (penetrate(object, x, count, in)) visit(begin, x, in);
                           });
 }
 
@@ -75,29 +68,47 @@ template <Real S>
   return sum / static_cast<S>(x.x.size());
 }
 
-/// Adds to `sum` the points of a leaf that begins at `begin`, each with its share of the law's force. A map's law is that at
-/// the leaf's middle, a point of the tool.
-template <class Sharing, Real S, ForceModel Force>
-inline void add_leaf(const ToolPoints<S>& tool, const Force& force, std::uint32_t begin,
-                     const PointLanes<S>& x, const PenetrationLanes<S>& in, LaneSum<S>& sum) noexcept {
-  std::array<S, 8> f, area;
-  for (std::size_t i = 0; i < f.size(); ++i) area[i] = tool.area((std::min)(begin + i, tool.size() - 1));
-  if constexpr (ForceMap<Force>) {
+/// What a leaf's points weigh: m_i/m up to the sharing's norm [-], and 1/A_i [1/m^2].
+template <Real S>
+struct LeafShare {
+  std::array<S, lane_count> weight, per_area;
+};
+template <class Sharing, Real S>
+[[nodiscard]] std::vector<LeafShare<S>> leaf_shares(const ToolPoints<S>& tool) {
+  std::vector<LeafShare<S>> shares((tool.size() + lane_count - 1) / lane_count);
+  for (std::size_t i = 0; i < lane_count * shares.size(); ++i) {
+    const S area = tool.area((std::min)(i, tool.size() - 1));
+    shares[i / lane_count].weight[i % lane_count] = Sharing::weight(area, tool.contact_area());
+    shares[i / lane_count].per_area[i % lane_count] = S(1) / area;
+  }
+  return shares;
+}
+
+/// Adds to `sum` the points of a leaf, each with its share of the law's force. A map's law is that at the leaf's middle, a
+/// point of the tool.
+template <Real S, ForceModel Force>
+inline void add_leaf(const LeafShare<S>& share, const Force& force, const PointLanes<S>& x,
+                     const PenetrationLanes<S>& in, LaneSum<S>& sum) noexcept {
+  if constexpr (requires(const LaneArray<S>& depth) { force.forces(depth); }) {
+    const LaneArray<S> depth = lane_array(in.depth).max(S(0)).min(force.max_depth());
+    sum.add(x, in, lane_array(share.weight) * force.forces(depth), share.per_area);
+  } else if constexpr (ForceMap<Force>) {
     const Vec3<S> middle = mean(x);
     const auto law = force.at(middle);
+    LaneArray<S> f;
     Vec3<S> configurational = Vec3<S>::Zero();
-    for (std::size_t i = 0; i < f.size(); ++i) {
-      const S weight = Sharing::weight(area[i], tool.contact_area());
-      f[i] = weight * law.force(in.depth[i]);
-      configurational += weight * law.configurational_force(in.depth[i]);
+    for (std::size_t i = 0; i < share.weight.size(); ++i) {
+      f[static_cast<int>(i)] = share.weight[i] * law.force(in.depth[i]);
+      configurational += share.weight[i] * law.configurational_force(in.depth[i]);
     }
     sum.add(middle, configurational);
+    sum.add(x, in, f, share.per_area);
   } else {
-    for (std::size_t i = 0; i < f.size(); ++i)
-      f[i] = in.depth[i] > S(0) ? Sharing::weight(area[i], tool.contact_area()) * force.force(in.depth[i])
-                                : S(0);
+    LaneArray<S> f;
+    for (std::size_t i = 0; i < share.weight.size(); ++i)
+      f[static_cast<int>(i)] = in.depth[i] > S(0) ? share.weight[i] * force.force(in.depth[i]) : S(0);
+    sum.add(x, in, f, share.per_area);
   }
-  sum.add(x, in, f, area);
 }
 }  // namespace detail
 
@@ -134,7 +145,8 @@ class Collector<SinglePoint, S> {
 template <MassSharing Sharing, Real S>
 class Collector<SingleRegion<Sharing>, S> {
  public:
-  Collector(const SingleRegion<Sharing>&, const ToolPoints<S>&) noexcept {}
+  Collector(const SingleRegion<Sharing>&, const ToolPoints<S>& tool)
+      : share_(detail::leaf_shares<Sharing>(tool)) {}
 
   template <ContactSurface Object, ForceModel Force>
   Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
@@ -144,7 +156,7 @@ class Collector<SingleRegion<Sharing>, S> {
     detail::for_each_touching_leaf(
         tool, X, object,
         [&](std::uint32_t begin, const PointLanes<S>& x, const PenetrationLanes<S>& in) noexcept {
-          detail::add_leaf<Sharing>(tool, force, begin, x, in, lanes);
+          detail::add_leaf(share_[begin / lane_count], force, x, in, lanes);
           touching = true;
         });
     slot_.update(touching);
@@ -160,6 +172,7 @@ class Collector<SingleRegion<Sharing>, S> {
 
  private:
   SingleSlot slot_;
+  std::vector<detail::LeafShare<S>> share_;
 };
 
 template <std::size_t N, MassSharing Sharing, Real S>
@@ -167,45 +180,42 @@ class Collector<Regions<N, Sharing>, S> {
  public:
   Collector(const Regions<N, Sharing>& regions, const ToolPoints<S>& tool)
       : tracker_(ProximityGraph<S>(tool, static_cast<S>(regions.distance)), tool.size()),
-        leaf_((tool.size() + lanes - 1) / lanes),
-        point_(tool.size()),
-        place_(tool.size()) {}
+        share_(detail::leaf_shares<Sharing>(tool)),
+        leaf_(share_.size()),
+        point_(tool.size() + 1) {}
 
   template <ContactSurface Object, ForceModel Force>
   Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
                  std::array<RegionSum<S>, N>& sums) noexcept {
     std::size_t leaves = 0, count = 0;
     S deepest = S(0);
-    detail::for_each_touching_leaf(
-        tool, X, object,
-        [&](std::uint32_t begin, const PointLanes<S>& x, const PenetrationLanes<S>& in) noexcept {
-          leaf_[leaves++] = {begin, 0, x, in};
+    for_each_candidate_leaf(
+        tool, X, object, [&](std::uint32_t begin, std::uint32_t points, const PointLanes<S>& x) noexcept {
+          Leaf& leaf = leaf_[leaves];
+          if (!detail::penetrate(object, x, points, leaf.in)) return;
+          leaf.begin = begin;
+          leaf.x = x;
+          ++leaves;
           for (std::uint32_t i = 0; i < lanes; ++i) {
-            if (!(in.depth[i] > S(0))) continue;
-            point_[count] = begin + i;
-            place_[count++] = Vec3<S>(x.x[i], x.y[i], x.z[i]);
-            deepest = (std::max)(deepest, in.depth[i]);
+            point_[count] = begin + i;  // without a branch: overwritten by the next one unless it touches
+            count += leaf.in.depth[i] > S(0) ? 1u : 0u;
           }
+          deepest = (std::max)(deepest, detail::lane_array(leaf.in.depth).maxCoeff());
         });
-    Status status = tracker_.update({point_.data(), count}, [&](std::size_t i) { return place_[i]; });
+    Status status =
+        tracker_.update({point_.data(), count}, [&](std::size_t i) { return X * tool.point(point_[i]); });
     if (count == 0) return Status::ok;
-    std::uint64_t met = 0;  // slots, as bits
-    std::size_t next = 0;   // touching point
-    for (std::size_t k = 0; k < leaves; ++k) {
-      Leaf& leaf = leaf_[k];
-      for (; next < count && point_[next] < leaf.begin + lanes; ++next)
-        leaf.slots |= std::uint64_t(1) << tracker_.slot_of()[next];
-      met |= leaf.slots;
-    }
+    if (tracker_.changed()) find_slots(leaves, count);
+    std::size_t next = 0;  // touching point
     const Vec3<S> centre_of_mass = X * tool.centre_of_mass();
     for (std::size_t slot = 0; slot < N; ++slot) {
       const std::uint64_t bit = std::uint64_t(1) << slot;
-      if ((met & bit) == 0) continue;
+      if ((met_ & bit) == 0) continue;
       LaneSum<S> sum(centre_of_mass);
       next = 0;
       for (std::size_t k = 0; k < leaves; ++k) {
         const Leaf& leaf = leaf_[k];
-        if (leaf.slots == bit) detail::add_leaf<Sharing>(tool, force, leaf.begin, leaf.x, leaf.in, sum);
+        if (leaf.slots == bit) detail::add_leaf(share_[leaf.begin / lanes], force, leaf.x, leaf.in, sum);
         if (leaf.slots == bit || (leaf.slots & bit) == 0) continue;
         PenetrationLanes<S> own = leaf.in;
         for (std::uint32_t i = 0; i < lanes; ++i) {
@@ -213,7 +223,7 @@ class Collector<Regions<N, Sharing>, S> {
           if (next == count || point_[next] != leaf.begin + i || tracker_.slot_of()[next] != slot)
             own.depth[i] = S(0);
         }
-        detail::add_leaf<Sharing>(tool, force, leaf.begin, leaf.x, own, sum);
+        detail::add_leaf(share_[leaf.begin / lanes], force, leaf.x, own, sum);
       }
       sums[slot] = sum.total();
       sums[slot].scale(Sharing::norm(static_cast<S>(sums[slot].points)));
@@ -225,7 +235,20 @@ class Collector<Regions<N, Sharing>, S> {
   void reset() noexcept { tracker_.reset(); }
 
  private:
-  static constexpr std::uint32_t lanes = PointLanes<S>::size;
+  // The slots of each leaf's touching points; they stay while those points stay.
+  void find_slots(std::size_t leaves, std::size_t count) noexcept {
+    std::size_t next = 0;
+    met_ = 0;
+    for (std::size_t k = 0; k < leaves; ++k) {
+      Leaf& leaf = leaf_[k];
+      leaf.slots = 0;
+      for (; next < count && point_[next] < leaf.begin + lanes; ++next)
+        leaf.slots |= std::uint64_t(1) << tracker_.slot_of()[next];
+      met_ |= leaf.slots;
+    }
+  }
+
+  static constexpr std::uint32_t lanes = static_cast<std::uint32_t>(lane_count);
   struct Leaf {
     std::uint32_t begin;
     std::uint64_t slots;  // of its touching points, as bits
@@ -234,9 +257,10 @@ class Collector<Regions<N, Sharing>, S> {
   };
 
   RegionTracker<S, N> tracker_;
+  std::vector<detail::LeafShare<S>> share_;
   std::vector<Leaf> leaf_;            // of this tick, those with touching points
   std::vector<std::uint32_t> point_;  // touching tool points of this tick, in order
-  std::vector<Vec3<S>> place_;        // where they are
+  std::uint64_t met_ = 0;             // slots that have points, as bits
 };
 
 }  // namespace palpate

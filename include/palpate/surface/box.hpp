@@ -69,6 +69,25 @@ class Box {
     return {blend.depth, Vec3<S>(w[0] - w[1], w[2] - w[3], w[4] - w[5])};
   }
 
+  /// The same for `lane_count` points.
+  PALPATE_FLATTEN void penetration(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
+    using Lanes = detail::LaneArray<S>;
+    using detail::lane_array;
+    const Vec3<S>& h = p_.half;
+    const Lanes rx = lane_array(x.x) - p_.centre.x(), ry = lane_array(x.y) - p_.centre.y(),
+                rz = lane_array(x.z) - p_.centre.z();
+    if (!is_finite(S((rx.abs() + ry.abs() + rz.abs()).sum())))
+      return detail::penetrate_one_by_one(*this, x, lane_count, in);
+    std::array<Lanes, 6> d{h.x() - rx, h.x() + rx, h.y() - ry, h.y() + ry, h.z() - rz, h.z() + rz}, w;
+    const Lanes within = detail::positive_faces<Lanes, S>(d, h.minCoeff());
+    Lanes depth;
+    detail::edge_blend(d, depth, w);
+    lane_array(in.depth) = within * depth;
+    lane_array(in.gradient_x) = within * (w[0] - w[1]);
+    lane_array(in.gradient_y) = within * (w[2] - w[3]);
+    lane_array(in.gradient_z) = within * (w[4] - w[5]);
+  }
+
   [[nodiscard]] bool inside(const Vec3<S>& x) const noexcept { return within(x - p_.centre); }
 
   /// True only if no point of the ball (c, r) is inside; false when anything is not finite or r < 0.

@@ -16,11 +16,13 @@
 /// Coordinates are the object's own [m]; give the tool's pose in them. A surface holds no state that a query
 /// changes, uses no heap in a query, and gives the same bits for the same input.
 
+#include <palpate/config.hpp>
 #include <palpate/core/vector.hpp>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace palpate {
@@ -42,19 +44,54 @@ struct Penetration {
   Vec3<S> gradient;  ///< [-]
 };
 
-/// Eight points, coordinate by coordinate: a compiler makes vector instructions of plain loops over them.
+/// So many points are worked on at once: two to eight vector registers' worth, whose operations do not wait for each other.
+inline constexpr std::size_t lane_count = 16;
+
+/// Points, coordinate by coordinate.
 template <Real S>
 struct PointLanes {
-  static constexpr int size = 8;
-  std::array<S, 8> x, y, z;  ///< [m]
+  std::array<S, lane_count> x, y, z;  ///< [m]
 };
 
-/// Penetration of eight points.
+/// Their penetration.
 template <Real S>
 struct PenetrationLanes {
-  std::array<S, 8> depth;                             ///< [m]
-  std::array<S, 8> gradient_x, gradient_y, gradient_z;  ///< [-]
+  std::array<S, lane_count> depth;                             ///< [m]
+  std::array<S, lane_count> gradient_x, gradient_y, gradient_z;  ///< [-]
 };
+
+namespace detail {
+/// One number per lane as whole vector registers, whatever a compiler makes of loops.
+template <Real S>
+using LaneArray = Eigen::Array<S, static_cast<int>(lane_count), 1>;
+template <Real S>
+[[nodiscard]] PALPATE_INLINE Eigen::Map<const LaneArray<S>> lane_array(const std::array<S, lane_count>& a) noexcept {
+  return Eigen::Map<const LaneArray<S>>(a.data());
+}
+template <Real S>
+[[nodiscard]] PALPATE_INLINE Eigen::Map<LaneArray<S>> lane_array(std::array<S, lane_count>& a) noexcept {
+  return Eigen::Map<LaneArray<S>>(a.data());
+}
+
+/// 1 for lanes > 0, 0 for the others. Lanes that are > 0 are at least epsilon / 2 times `size` there: they are differences of
+/// numbers of that size. By arithmetic, because Eigen chooses between vectors one number at a time.
+template <class V, Real S>
+[[nodiscard]] PALPATE_INLINE V one_if_positive(const V& x, S size) noexcept {
+  return (x * (S(4) / (std::numeric_limits<S>::epsilon() * size))).max(S(0)).min(S(1));
+}
+
+/// Penetration of the first `count` points with the surface's function for one.
+template <class B, Real S>
+inline void penetrate_one_by_one(const B& body, const PointLanes<S>& x, std::size_t count, PenetrationLanes<S>& in) noexcept {
+  for (std::size_t i = 0; i < count; ++i) {
+    const Penetration<S> one = body.penetration(Vec3<S>(x.x[i], x.y[i], x.z[i]));
+    in.depth[i] = one.depth;
+    in.gradient_x[i] = one.gradient.x();
+    in.gradient_y[i] = one.gradient.y();
+    in.gradient_z[i] = one.gradient.z();
+  }
+}
+}  // namespace detail
 
 /// Where a ray first meets the surface.
 template <Real S>
@@ -89,7 +126,7 @@ concept HasPenetration = requires(const B& body, const Vec3<typename B::Scalar>&
   { body.penetration(x) } noexcept -> std::same_as<Penetration<typename B::Scalar>>;
 };
 
-template <class B>  // optional: the same for eight points at once, to rounding; the solver uses it where it is there
+template <class B>  // optional: the same for `lane_count` points at once, to rounding; the solver uses it where it is there
 concept HasPenetrationLanes =
     requires(const B& body, const PointLanes<typename B::Scalar>& x, PenetrationLanes<typename B::Scalar>& in) {
       { body.penetration(x, in) } noexcept;

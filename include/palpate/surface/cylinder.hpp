@@ -79,6 +79,27 @@ class Cylinder {
     return {blend.depth, slope * outward(r) + Vec3<S>(S(0), w[1] - w[2], S(0))};
   }
 
+  /// The same for `lane_count` points.
+  PALPATE_FLATTEN void penetration(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
+    using Lanes = detail::LaneArray<S>;
+    using detail::lane_array;
+    const S R = p_.radius, h = p_.half_height;
+    const Lanes rx = lane_array(x.x) - p_.centre.x(), ry = lane_array(x.y) - p_.centre.y(),
+                rz = lane_array(x.z) - p_.centre.z(), square = rx * rx + rz * rz;
+    if (!is_finite(S(square.sum() + ry.abs().sum())))
+      return detail::penetrate_one_by_one(*this, x, lane_count, in);
+    const Lanes rho = square.sqrt(), above = rho.max(R / S(2)), below = rho.min(R / S(2));
+    std::array<Lanes, 3> d{(R - above) + (R / S(4) - below * (below / R)), h - ry, h + ry}, w;
+    const Lanes within = detail::positive_faces<Lanes, S>(d, half().minCoeff());
+    Lanes depth;
+    detail::edge_blend(d, depth, w);
+    const Lanes across = within * w[0] / above;  // 2 rho / R times 1 / rho where deep
+    lane_array(in.depth) = within * depth;
+    lane_array(in.gradient_x) = across * rx;
+    lane_array(in.gradient_y) = within * (w[1] - w[2]);
+    lane_array(in.gradient_z) = across * rz;
+  }
+
   [[nodiscard]] bool inside(const Vec3<S>& x) const noexcept { return within(x - p_.centre); }
 
   /// True only if no point of the ball (c, r) is inside; false when anything is not finite or r < 0.

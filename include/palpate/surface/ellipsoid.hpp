@@ -6,10 +6,6 @@
 #include <palpate/surface/lattice_mesh.hpp>
 #include <palpate/surface/shape_tools.hpp>
 
-#include <bit>
-#include <cstdint>
-#include <type_traits>
-
 namespace palpate {
 
 /// Ellipsoid sum_i ((x_i - m_i) / a_i)^2 = 1, axes along the object's.
@@ -83,29 +79,20 @@ class Ellipsoid {
     const Vec3<S> r = x - p_.centre;
     const S g = r.cwiseProduct(inverse_).squaredNorm();
     if (!is_finite(g) || !(g < S(1))) return {S(0), Vec3<S>::Zero()};
-    S depth, error;
+    S depth;
     Vec3<S> n;
-    near_surface<1>(&x.x(), &x.y(), &x.z(), &depth, &n.x(), &n.y(), &n.z(), &error);
-    if (error <= tolerance) return {depth, n};
+    if (near_surface<1>(&x.x(), &x.y(), &x.z(), &depth, &n.x(), &n.y(), &n.z())) return {depth, n};
     const Foot foot = solve(r);
     return {-foot.distance, foot.normal};
   }
 
-  /// The same for eight points.
+  /// The same for `lane_count` points.
   void penetration(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
-    constexpr int N = PointLanes<S>::size;
-    S error[N];
+    constexpr int N = static_cast<int>(lane_count);
     if (near_surface<N>(x.x.data(), x.y.data(), x.z.data(), in.depth.data(), in.gradient_x.data(),
-                        in.gradient_y.data(), in.gradient_z.data(), error))
+                        in.gradient_y.data(), in.gradient_z.data()))
       return;
-    for (std::size_t i = 0; i < N; ++i) {
-      if (error[i] <= tolerance) continue;
-      const Foot foot = solve(Vec3<S>(x.x[i], x.y[i], x.z[i]) - p_.centre);
-      in.depth[i] = -foot.distance;
-      in.gradient_x[i] = foot.normal.x();
-      in.gradient_y[i] = foot.normal.y();
-      in.gradient_z[i] = foot.normal.z();
-    }
+    detail::penetrate_one_by_one(*this, x, lane_count, in);
   }
 
   [[nodiscard]] bool inside(const Vec3<S>& x) const noexcept {
@@ -191,108 +178,72 @@ class Ellipsoid {
     S distance;
   };
 
-  // Penetration of N points near the surface; loops without branches, which the compiler vectorises. True: all are inside
-  // and settled. Otherwise `error` [-] of the foot is 0 outside, and large where a point is too deep for this: those are
-  // for solve().
+  // Penetration of N points near the surface, 0 outside; one vector instruction for each operation where N > 1. False where
+  // one is too deep for this or not finite: then nothing is said of any.
   // As solve() with s = w - 1 and q_i = z_i / (1 + s j_i), j_i = (a_min / a_i)^2; but the first step needs no division
   // by 1 + s j_i, and after the second the change of q is small enough for three terms of its series.
   template <int N>
-  bool near_surface(const S* PALPATE_RESTRICT x, const S* PALPATE_RESTRICT y, const S* PALPATE_RESTRICT z,
-                    S* PALPATE_RESTRICT depth, S* PALPATE_RESTRICT nx, S* PALPATE_RESTRICT ny, S* PALPATE_RESTRICT nz,
-                    S* PALPATE_RESTRICT error) const noexcept {
-    const S cx = p_.centre.x(), cy = p_.centre.y(), cz = p_.centre.z();
-    const S ix = inverse_.x(), iy = inverse_.y(), iz = inverse_.z();
-    const S bx = slope_.x(), by = slope_.y(), bz = slope_.z();
-    const S jx = bx * bx, jy = by * by, jz = bz * bz, scale = min_;
-    S zx[N], zy[N], zz[N], qx[N], qy[N], qz[N], s[N], square[N], m[N];
-    for (int i = 0; i < N; ++i) {
-      zx[i] = (x[i] - cx) * ix;
-      zy[i] = (y[i] - cy) * iy;
-      zz[i] = (z[i] - cz) * iz;
-      const S G = zx[i] * zx[i] + zy[i] * zy[i] + zz[i] * zz[i];
-      s[i] = step(G, zx[i] * zx[i], zy[i] * zy[i], zz[i] * zz[i], jx, jy, jz);
-      square[i] = G;
-    }
+  PALPATE_FLATTEN [[nodiscard]] bool near_surface(const S* x, const S* y, const S* z, S* depth, S* nx, S* ny,
+                                                  S* nz) const noexcept {
+    using Lanes = Eigen::Array<S, N, 1>;
+    using In = Eigen::Map<const Lanes>;
+    using Out = Eigen::Map<Lanes>;
+    const Vec3<S> j = slope_.cwiseAbs2();
+    const Lanes zx = (In(x) - p_.centre.x()) * inverse_.x(), zy = (In(y) - p_.centre.y()) * inverse_.y(),
+                zz = (In(z) - p_.centre.z()) * inverse_.z();
+    Lanes qx = zx * zx, qy = zy * zy, qz = zz * zz, G = qx + qy + qz, f = G - S(1);
+    const Lanes within = detail::one_if_positive<Lanes, S>(-f, S(1));
+    const bool usable = is_finite(S(G.sum())) && S(G.minCoeff()) > S(0.25);
+    // sqrt(G) - 1 by its continued fraction, and with one division together with 1 / H.
+    const Lanes h = qx * j.x() + qy * j.y() + qz * j.z(), below = S(16) + f * (S(12) + f),
+                per = (h * below).inverse();
+    Lanes s = step<Lanes>(G, f * (S(8) + S(4) * f) * (h * per), below * per, qx * (j.x() * j.x()),
+                          qy * (j.y() * j.y()), qz * (j.z() * j.z()), Lanes::Constant(j.x()),
+                          Lanes::Constant(j.y()), Lanes::Constant(j.z()));
     bool settled = false;
-    for (int k = 0; k < 3; ++k) {
-      for (int i = 0; i < N; ++i) {
-        const S vx = S(1) / (S(1) + s[i] * jx), vy = S(1) / (S(1) + s[i] * jy), vz = S(1) / (S(1) + s[i] * jz);
-        const S px = zx[i] * vx, py = zy[i] * vy, pz = zz[i] * vz, ux = jx * vx, uy = jy * vy, uz = jz * vz;
-        const S G = px * px + py * py + pz * pz;
-        const S change = step(G, px * px, py * py, pz * pz, ux, uy, uz);
-        const S ex = ux * change, ey = uy * change, ez = uz * change;
-        qx[i] = px * (S(1) - ex * (S(1) - ex * (S(1) - ex)));
-        qy[i] = py * (S(1) - ey * (S(1) - ey * (S(1) - ey)));
-        qz[i] = pz * (S(1) - ez * (S(1) - ez * (S(1) - ez)));
-        s[i] += change;
-        error[i] = std::abs(qx[i] * qx[i] + qy[i] * qy[i] + qz[i] * qz[i] - S(1));
+    for (int k = 0; k < 3 && !settled; ++k) {
+      const Lanes dx = S(1) + s * j.x(), dy = S(1) + s * j.y(), dz = S(1) + s * j.z();
+      Lanes vx, vy, vz;
+      if constexpr (N == 1) {  // waits for results, not for the divider
+        vx = dx.inverse(), vy = dy.inverse(), vz = dz.inverse();
+      } else {
+        const Lanes dyz = dy * dz, v = (dx * dyz).inverse(), vdx = v * dx;
+        vx = v * dyz, vy = vdx * dz, vz = vdx * dy;
       }
-      settled = all_settled<N>(square, s, error);
-      if (settled) break;
-      bool done = true;
-      for (int i = 0; i < N; ++i) {
-        if (outside(square[i])) error[i] = S(0);
-        else if (!(square[i] > S(0.25) && s[i] > S(-0.75))) error[i] = S(1);
-        done = done && error[i] <= tolerance;
-      }
-      if (done) break;
+      const Lanes ux = vx * j.x(), uy = vy * j.y(), uz = vz * j.z();
+      const Lanes px = zx * vx, py = zy * vy, pz = zz * vz;
+      qx = px * px, qy = py * py, qz = pz * pz, G = qx + qy + qz, f = G - S(1);
+      const Lanes hx = qx * ux, hy = qy * uy, hz = qz * uz;
+      // f is small by now: four terms of the series of sqrt(1 + f) - 1.
+      const Lanes t = f * (S(0.5) - f * (S(0.125) - f * (S(0.0625) - f * S(0.0390625))));
+      const Lanes change = step<Lanes>(G, t, (hx + hy + hz).inverse(), hx * ux, hy * uy, hz * uz, ux, uy, uz);
+      const Lanes ex = ux * change, ey = uy * change, ez = uz * change;
+      qx = px * (S(1) - ex * (S(1) - ex * (S(1) - ex)));
+      qy = py * (S(1) - ey * (S(1) - ey * (S(1) - ey)));
+      qz = pz * (S(1) - ez * (S(1) - ez * (S(1) - ez)));
+      s += change;
+      // |q| may be 1 by chance before the step is small enough for its series: their next terms count too.
+      const Lanes e = ex * ex + ey * ey + ez * ez;
+      const Lanes wrong = ((qx * qx + qy * qy + qz * qz - S(1)).abs() + e * e) * within;
+      settled = usable && is_finite(S(wrong.sum())) && S(wrong.maxCoeff()) <= tolerance &&
+                S((s * within).minCoeff()) > S(-0.75);
     }
-    for (int i = 0; i < N; ++i) {
-      qx[i] *= bx;
-      qy[i] *= by;
-      qz[i] *= bz;
-      m[i] = qx[i] * qx[i] + qy[i] * qy[i] + qz[i] * qz[i];
-    }
-    // Four by Eigen's, because std::sqrt may set errno, and then a compiler takes it one by one.
-    if constexpr (N % 4 == 0) {
-      for (int i = 0; i < N; i += 4) {
-        Eigen::Map<Eigen::Array<S, 4, 1>> length(m + i);
-        length = length.sqrt();
-      }
-    } else {
-      for (int i = 0; i < N; ++i) m[i] = std::sqrt(m[i]);
-    }
-    for (int i = 0; i < N; ++i) {
-      const S r = S(1) / m[i];
-      depth[i] = -s[i] * scale * m[i];
-      nx[i] = qx[i] * r;
-      ny[i] = qy[i] * r;
-      nz[i] = qz[i] * r;
-    }
-    if (settled) return true;
-    for (int i = 0; i < N; ++i) {
-      if (outside(square[i])) depth[i] = nx[i] = ny[i] = nz[i] = S(0);
-    }
-    return false;
+    qx *= slope_.x(), qy *= slope_.y(), qz *= slope_.z();
+    const Lanes m = (qx * qx + qy * qy + qz * qz).sqrt(), r = within * m.inverse();
+    Out{depth} = (s * within) * (m * -min_);
+    Out{nx} = qx * r;
+    Out{ny} = qy * r;
+    Out{nz} = qz * r;
+    return settled;
   }
 
-  // 1/4 < square < 1, s > -3/4 and error <= tolerance for all; by the bits, because a loop that gathers the results of
-  // comparisons of reals is not vectorised. For reals >= 0 (and NaN last) bits are in the order of the values, so the
-  // sign of a difference is the answer.
-  template <int N>
-  [[nodiscard]] static bool all_settled(const S* square, const S* s, const S* error) noexcept {
-    using Bits = std::conditional_t<sizeof(S) == 4, std::uint32_t, std::uint64_t>;
-    constexpr Bits one = std::bit_cast<Bits>(S(1)), quarter = std::bit_cast<Bits>(S(0.25)),
-                   most = std::bit_cast<Bits>(tolerance);
-    Bits wrong = 0;
-    for (int i = 0; i < N; ++i) {
-      const Bits g = std::bit_cast<Bits>(square[i]);
-      wrong |= (one - 1 - g) | (g - quarter - 1) | (most - std::bit_cast<Bits>(error[i])) |
-               std::bit_cast<Bits>(S(0.75) + s[i]);
-    }
-    return (wrong >> (8 * sizeof(S) - 1)) == 0;
-  }
-
-  [[nodiscard]] static bool outside(S square) noexcept { return !is_finite(square) || !(square < S(1)); }
-
-  // Step in w of order 4 towards |q| = 1, for squares of q and G their sum, with u_i = 1 / (w + r_i - 1): Householder's
-  // third step for 1/|q| - 1, with sqrt(G) - 1 = t by its continued fraction.
-  [[nodiscard]] static S step(S G, S qx, S qy, S qz, S ux, S uy, S uz) noexcept {
-    const S hx = qx * ux, hy = qy * uy, hz = qz * uz, kx = hx * ux, ky = hy * uy, kz = hz * uz;
-    const S H = hx + hy + hz, K = kx + ky + kz, L = kx * ux + ky * uy + kz * uz;
-    const S f = G - S(1), t = f * (S(8) + S(4) * f) / (S(16) + f * (S(12) + f));
-    const S r = S(1) / H, g = G * r, k = (K * r) * g, l = (L * r) * (g * g);
-    const S e = S(1) - k;  // 0 for a sphere, as is 1 - l
+  // Step in w of order 4 towards |q| = 1, with G = |q|^2, t = |q| - 1, u_i = 1 / (w + r_i - 1), 1 / r = H = sum u_i q_i^2 and
+  // k_i = u_i^2 q_i^2: Householder's third step for 1/|q| - 1.
+  template <class V>
+  [[nodiscard]] static PALPATE_INLINE V step(const V& G, const V& t, const V& r, const V& kx, const V& ky,
+                                             const V& kz, const V& ux, const V& uy, const V& uz) noexcept {
+    const V g = G * r, k = (kx + ky + kz) * r * g, l = ((kx * ux + ky * uy + kz * uz) * r) * (g * g);
+    const V e = S(1) - k;  // 0 for a sphere, as is 1 - l
     return (g * t) * (S(1) + t * (t * (S(4.5) * e * (e - S(1)) + S(2) * (S(1) - l)) - S(1.5) * e));
   }
 

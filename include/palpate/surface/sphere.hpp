@@ -60,6 +60,23 @@ class Sphere {
     return {p_.radius - length, r / length};
   }
 
+  /// The same for `lane_count` points.
+  PALPATE_FLATTEN void penetration(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
+    using Lanes = detail::LaneArray<S>;
+    using detail::lane_array;
+    const Lanes rx = lane_array(x.x) - p_.centre.x(), ry = lane_array(x.y) - p_.centre.y(),
+                rz = lane_array(x.z) - p_.centre.z(), square = rx * rx + ry * ry + rz * rz;
+    const S smallest = (std::numeric_limits<S>::min)() / std::numeric_limits<S>::epsilon();
+    if (!is_finite(S(square.sum())) || !(S(square.minCoeff()) > smallest))
+      return detail::penetrate_one_by_one(*this, x, lane_count, in);
+    const Lanes length = square.sqrt(), depth = p_.radius - length;
+    const Lanes within = detail::one_if_positive<Lanes, S>(depth, p_.radius), outward = within / length;
+    lane_array(in.depth) = within * depth;
+    lane_array(in.gradient_x) = outward * rx;
+    lane_array(in.gradient_y) = outward * ry;
+    lane_array(in.gradient_z) = outward * rz;
+  }
+
   [[nodiscard]] bool inside(const Vec3<S>& x) const noexcept {
     const S square = (x - p_.centre).squaredNorm();
     return is_finite(square) && square < p_.radius * p_.radius;

@@ -77,6 +77,12 @@ TEST_CASE("pressed body: the contact vertex moves by D, the bottom centre stays,
   CHECK((at(top) - mesh.vertices[top] - Vec3<double>(0, -2e-3, 0)).norm() <= 1e-8);
   CHECK((at(low) - mesh.vertices[low]).norm() <= 1e-9);
   CHECK(scene.model.write(contacts, out).vertices == 0);
+  const std::vector<double> drawn = positions;
+  scene.model.write_rest(out);
+  CHECK(scene.model.write(std::vector<ContactState<double>>{}, out).vertices == 0);
+  CHECK(scene.model.write(contacts, VertexBuffer<double>{}).vertices == 0);  // no buffer: not taken as drawn
+  CHECK(scene.model.write(contacts, out).vertices == moved.vertices);
+  CHECK(positions == drawn);
 }
 
 TEST_CASE("a second contact that appears with no force changes nothing") {

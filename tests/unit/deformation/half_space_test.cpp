@@ -86,6 +86,10 @@ TEST_CASE_TEMPLATE("half-spaces: the fixed region stays, the contact moves by D,
     if (mesh.vertices[v].y() > S(0.03999)) CHECK((u - contacts[0].displacement).norm() < S(1e-4));
   }
   CHECK(model.write(std::span(contacts), buffer).vertices == 0);
+  const std::vector<float> drawn = out;
+  model.write_rest(buffer);
+  CHECK(model.write(std::span(contacts), buffer).vertices == mesh.vertices.size());
+  CHECK(out == drawn);
   const std::vector<ContactState<S>> none;
   CHECK(model.write(std::span(none), buffer).vertices == mesh.vertices.size());
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)

@@ -72,6 +72,10 @@ TEST_CASE("response field as a deformation model: rest, patch, normals, box, not
   p[0] = 3.f;
   CHECK(model.write(std::span(&one, 1), out).vertices == 0);  // the same: not touched
   CHECK(p[0] == 3.f);
+  model.write_rest(out);
+  const std::vector<float> rest = p;
+  CHECK(model.write(std::span(&one, 1), out).vertices == n);
+  CHECK(p != rest);
   // Letting go gives the rest shape back.
   CHECK(model.write(std::span<const ContactState<double>>(), out).vertices == n);
   for (std::size_t v = 0; v < n; ++v) CHECK(p[4 * v + 1] == static_cast<float>(mesh.vertices[v].y()));

@@ -65,6 +65,7 @@ TEST_CASE_TEMPLATE("duffing: force against long double over many decades", S, fl
     const long double y = share;
     if (is_finite(softening.max_force()) && softening.force(share) > std::numeric_limits<S>::min()) {
       CHECK_RELATIVE(softening.force(share), a * y - b * y * y * y, promise);
+      CHECK_RELATIVE(softening.forces(share), a * y - b * y * y * y, promise);
     }
   }
 }

@@ -100,3 +100,50 @@ TEST_CASE("set-up refuses an open mesh, an empty fixed region, nu out of range")
   CHECK_THROWS_AS((void)make_solve_mesh(closed, std::vector<std::uint8_t>(closed.mesh().triangles.size(), 0)), SetupError);
   CHECK_THROWS_AS(BoundaryElements(solve_mesh(test::box_mesh(V(1, 1, 1), 4), 1e-9, 60), 0.51, 1), SetupError);
 }
+
+TEST_CASE("bar 1:6 held at its end: bent, Timoshenko's deflection; twisted, Saint-Venant's, with the observed order") {
+  // nu = 0: the held end does not disturb the beam's stress.
+  const double length = 6, E = 2, mu = 1;
+  double bent[2], twisted[2], edge[2];
+  for (int k = 0; k < 2; ++k) {
+    const SolveMesh m = solve_mesh(test::box_mesh(V(1, length, 1), 8), 1e-9, k == 0 ? 130 : 320);
+    BoundaryElements bem(m, 0.0, 1);
+    detail::Matrix u(3 * Eigen::Index(m.vertices.size()), 2);
+    VectorXd bend = VectorXd::Zero(3 * Eigen::Index(m.nodes.size())), twist = bend;
+    for (std::size_t n = 0; n < m.nodes.size(); ++n) {
+      if (m.nodes[n].normal.y() < 0.5) continue;
+      const V x = m.vertices[m.nodes[n].vertex] - V(0.5, length, 0.5);
+      bend.segment<3>(3 * Eigen::Index(n)) = V(0, 0, 1);
+      twist.segment<3>(3 * Eigen::Index(n)) = V::UnitY().cross(x);
+    }
+    u.col(0) = bem.G() * bend;
+    u.col(1) = bem.G() * twist;
+    bem.factorise();
+    bem.solve(u);
+    double deflection = 0, count = 0, angle = 0, arm = 0;
+    for (std::size_t v = 0; v < m.vertices.size(); ++v) {
+      const V x = m.vertices[v] - V(0.5, length - 1, 0.5);
+      if (x.y() > 1 - 1e-9) {
+        deflection += u(3 * Eigen::Index(v) + 2, 0);
+        ++count;
+      }
+      // A section's turn, one width from the loaded end (Saint-Venant's principle): between 0.6 and 1.4 widths, at its own y.
+      if (std::abs(x.y()) < 0.4) {
+        const V turned = V::UnitY().cross(x);
+        angle += turned.dot(u.block<3, 1>(3 * Eigen::Index(v), 1)) / m.vertices[v].y();
+        arm += turned.squaredNorm();
+      }
+    }
+    // Force 1, moment of the twist 1/6: the polar moment of a unit square. Square: J = 0.140577.
+    const double tip = length * length * length / (3 * E / 12) + 1.2 * length / mu;
+    bent[k] = deflection / count / tip - 1;
+    twisted[k] = angle / arm / ((1.0 / 6) / (0.140577 * mu)) - 1;
+    edge[k] = m.length;
+  }
+  const auto order = [&](const double* e) { return std::log(std::abs(e[0] / e[1])) / std::log(edge[0] / edge[1]); };
+  MESSAGE("bent ", bent[0], " to ", bent[1], ", order ", order(bent), "; twisted ", twisted[0], " to ", twisted[1], ", order ",
+          order(twisted));
+  CHECK(std::abs(bent[1]) < 0.02);     // linear u: 0.1
+  CHECK(std::abs(twisted[1]) < 0.05);  // warping is held at the end: about 1 %
+  CHECK(std::abs(twisted[1]) < std::abs(twisted[0]));
+}

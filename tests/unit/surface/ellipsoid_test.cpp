@@ -220,7 +220,7 @@ TEST_CASE("exact surfaces: bad parameters are refused by name and value") {
           "Sphere: radius [m] must be in [1e-6, 1e6], got inf");
 }
 
-TEST_CASE_TEMPLATE("eight points at once are the same as one by one, from outside to the centre", S, float, double) {
+TEST_CASE_TEMPLATE("many points at once are the same as one by one, from outside to the centre", S, float, double) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> unit(-1, 1), logarithm(-8, 0.3);
   for (const Vec3<S>& axes : {Vec3<S>(S(0.06), S(0.04), S(0.04)), Vec3<S>(S(0.03), S(0.02), S(0.01)),
@@ -229,7 +229,7 @@ TEST_CASE_TEMPLATE("eight points at once are the same as one by one, from outsid
     for (int k = 0; k < 500; ++k) {
       PointLanes<S> x;
       const S shrink = S(1) - S(std::pow(10.0, logarithm(random)));  // near the surface, deep, and outside
-      for (std::size_t i = 0; i < 8; ++i) {
+      for (std::size_t i = 0; i < lane_count; ++i) {
         const Vec3<S> q = Vec3<S>(S(unit(random)), S(unit(random)), S(unit(random))).normalized();
         const Vec3<S> p = body.params().centre + axes.cwiseProduct(q) * (i == 7 ? S(1.5) : shrink);
         x.x[i] = p.x(), x.y[i] = p.y(), x.z[i] = p.z();
@@ -237,7 +237,7 @@ TEST_CASE_TEMPLATE("eight points at once are the same as one by one, from outsid
       if (k % 100 == 0) x.y[3] = std::numeric_limits<S>::quiet_NaN();
       PenetrationLanes<S> in;
       body.penetration(x, in);
-      for (std::size_t i = 0; i < 8; ++i) {
+      for (std::size_t i = 0; i < lane_count; ++i) {
         const Penetration<S> one = body.penetration(Vec3<S>(x.x[i], x.y[i], x.z[i]));
         // The same formula, in which a compiler may contract products and sums in another way: a few ulp.
         const S ulps = S(16) * std::numeric_limits<S>::epsilon() * axes.maxCoeff();

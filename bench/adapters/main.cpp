@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: MIT
+
+/// @file  Candidates from palpate's own search, from FCL's tree and from Bullet's: `bench_adapters OUTPUT.csv [--quick]`.
+/// A ball of 1,000 points and 20 mm radius glides 2 mm deep over a dented body of 39,000 triangles, as in bench/mesh;
+/// depth from the mesh itself and from its samples. "fcl_collide" asks fcl::collide() instead of walking FCL's tree.
+/// Columns: points that are candidates, the search alone, the whole tick, heap allocations per tick, mean force. Ratios
+/// between rows of one run are what to read.
+
+#include <palpate/adapters/bullet.hpp>
+#include <palpate/adapters/fcl.hpp>
+#include <palpate/palpate.hpp>
+
+#include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
+#include <fcl/narrowphase/collision.h>
+
+#include <support/no_heap.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <vector>
+
+namespace {
+
+using namespace palpate;
+using S = double;
+using V = Vec3<S>;
+using Clock = std::chrono::steady_clock;
+
+double since(Clock::time_point start) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+double median(std::vector<double>& times) {
+  const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
+  std::nth_element(times.begin(), middle, times.end());
+  return *middle;
+}
+
+MeshData<S> body_mesh() {
+  MeshData<S> mesh = Sphere<S>({.radius = 1}).mesh(20000);
+  for (V& v : mesh.vertices) {
+    const V n = v.normalized();
+    v *= 0.1 * (1 + 0.33 * std::sin(4 * n.x()) * std::cos(3 * n.y() + 1) + 0.1 * n.z());
+  }
+  return mesh;
+}
+
+constexpr S ball = 0.02, pressed = 2e-3;
+
+/// 20 pieces of path around the body, 50 um a tick.
+std::vector<Pose<S>> path(const MeshSurface<S>& body, int ticks) {
+  std::vector<Pose<S>> poses;
+  for (int i = 0; i < ticks; ++i) {
+    const S t = 0.314 * (i / (ticks / 20)) + 5e-4 * (i % (ticks / 20));
+    const V out = V(std::cos(t), 0.4 * std::sin(3 * t), std::sin(t)).normalized();
+    Pose<S> X;
+    X.translation = body.raycast(out, -out).position + (ball - pressed) * out;
+    poses.push_back(X);
+  }
+  return poses;
+}
+
+/// FCL's own answer to the question.
+struct Collide {
+  const fcl::BVHModel<fcl::OBBRSS<S>>* model;
+  bool touches(const V& c, S r) const noexcept {
+    const fcl::Sphere<S> query(r);
+    fcl::Transform3<S> place = fcl::Transform3<S>::Identity();
+    place.translation() = c;
+    fcl::CollisionResult<S> result;
+    return fcl::collide<S>(&query, place, model, fcl::Transform3<S>::Identity(), {}, result) > 0;
+  }
+};
+
+template <class Object>
+void row(std::FILE* file, const char* depth, const char* search, const Object& object,
+         const std::vector<Pose<S>>& poses) {
+  const ToolPoints<S> tool(TriangleMesh<S>(Sphere<S>({.radius = ball}).mesh(1016)), {.contact_area = 1e-4});
+  ContactSolver<Object, DuffingForce<S>, Frictionless<S>, SingleRegion<>> solver(
+      {object, tool, DuffingForce<S>({.c1 = 40, .c3 = 3e8}), {}, {}, {}});
+  std::vector<double> searches, ticks;
+  searches.reserve(poses.size());
+  ticks.reserve(poses.size());
+  double candidates = 0, force = 0;
+  std::size_t allocations = 0;
+  const auto count = static_cast<double>(poses.size());
+  for (const Pose<S>& X : poses) {
+    auto start = Clock::now();
+    for_each_candidate_leaf(
+        tool, X, solver.object(),
+        [&](std::uint32_t, std::uint32_t points, const PointLanes<S>&) noexcept { candidates += points; });
+    searches.push_back(since(start));
+    const test::HeapCount heap;
+    start = Clock::now();
+    force += solver.tick(X).wrench.force.norm();
+    ticks.push_back(since(start));
+    allocations += heap.allocations();
+  }
+  for (std::FILE* out : {file, stdout}) {
+    std::fprintf(out, "%s,%s,%.1f,%.2f,%.2f,%.1f,%.8g\n", depth, search, candidates / count, median(searches),
+                 median(ticks), static_cast<double>(allocations) / count, force / count);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc < 2 || argc > 3 || (argc == 3 && std::strcmp(argv[2], "--quick") != 0)) {
+    std::fprintf(stderr, "usage: bench_adapters OUTPUT.csv [--quick]\n");
+    return 2;
+  }
+  std::FILE* out = std::fopen(argv[1], "w");
+  if (!out) {
+    std::perror(argv[1]);
+    return 1;
+  }
+  const MeshData<S> data = body_mesh();
+  const MeshSurface<S> body{TriangleMesh<S>(data)};
+  const SampledSurface<MeshSurface<S>> samples(body, {.spacing = 2e-3});
+  const std::vector<Pose<S>> poses = path(body, argc == 3 ? 200 : 2000);
+
+  std::vector<fcl::Triangle> triangles;
+  std::vector<int> indices;
+  std::vector<btScalar> coordinates;
+  for (const auto& t : data.triangles) {
+    triangles.emplace_back(t[0], t[1], t[2]);
+    for (const std::uint32_t v : t) indices.push_back(static_cast<int>(v));
+  }
+  for (const V& v : data.vertices)
+    for (int k = 0; k < 3; ++k) coordinates.push_back(static_cast<btScalar>(v[k]));
+  const auto build = [&](auto& model) {
+    model.beginModel();
+    model.addSubModel(data.vertices, triangles);
+    model.endModel();
+  };
+  fcl::BVHModel<fcl::OBBRSS<S>> oriented;
+  fcl::BVHModel<fcl::AABB<S>> parallel;
+  build(oriented);
+  build(parallel);
+  btTriangleIndexVertexArray arrays(static_cast<int>(triangles.size()), indices.data(), 3 * sizeof(int),
+                                    static_cast<int>(data.vertices.size()), coordinates.data(),
+                                    3 * sizeof(btScalar));
+  btBvhTriangleMeshShape shape(&arrays, true);
+
+  const char* head = "depth,search,candidates,search_us_p50,tick_us_p50,allocations,force_N";
+  std::fprintf(out, "%s\n", head);
+  std::printf("%s\n", head);
+  const auto rows = [&](const char* depth, const auto& object, S margin) {
+    row(out, depth, "palpate", object, poses);
+    row(out, depth, "fcl_obbrss", CandidatesFrom(object, FclTree(oriented), margin), poses);
+    row(out, depth, "fcl_aabb", CandidatesFrom(object, FclTree(parallel), margin), poses);
+    row(out, depth, "fcl_collide", CandidatesFrom(object, Collide{&oriented}, margin), poses);
+    row(out, depth, "bullet", CandidatesFrom(object, BulletTree(shape), margin), poses);
+  };
+  rows("mesh", body, 0);
+  rows("samples", samples, 1.62 * samples.spacing());
+  return std::fclose(out) == 0 ? 0 : 1;
+}

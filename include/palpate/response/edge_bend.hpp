@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Quadratic displacement without more unknowns: how far u at the middle of an edge lies from the mean of its ends.
+/// Set-up only.
+///
+///     b = u(m) - (u(p) + u(q)) / 2 = -1/8 e^T K e ,   e = q - p
+///
+/// K: second derivatives of u in the tangent plane, from the quadratic that fits u best at the neighbours of two rings on
+/// the same smooth part; mean over the edge's ends and sides. Exact where u is quadratic in a plane; 0 where it is linear.
+/// With linear u alone a bar or plate that bends is 10 to 900 % wrong (docs/accuracy.md). The idea is that of gradient
+/// recovery, [zienkiewicz1992].
+
+#include <palpate/response/solve_mesh.hpp>
+
+#include <Eigen/Cholesky>
+
+namespace palpate::detail {
+
+struct VertexWeight {
+  std::uint32_t vertex;
+  double weight;
+};
+
+/// For every edge of a solve mesh, weights with b = sum weight u(vertex); they sum to 0.
+class EdgeBend {
+ public:
+  explicit EdgeBend(const SolveMesh& m) : of_(m.triangles.size()) {
+    const std::vector<MeshEdge> edges = mesh_edges(m.triangles, "EdgeBend");
+    const std::vector<Fit> fits = fit_nodes(m);
+    weights_.resize(edges.size());
+    for (std::uint32_t i = 0; i < edges.size(); ++i) {
+      const MeshEdge& edge = edges[i];
+      const Vec3d e = m.vertices[edge.b()] - m.vertices[edge.a()];
+      std::vector<VertexWeight> all;
+      for (std::size_t side = 0; side < 2; ++side) {
+        const auto& nodes = m.nodes_of[edge.triangle[side]];
+        const std::uint32_t c = edge.corner[side];
+        of_[edge.triangle[side]][c] = i;
+        for (auto k : {nodes[c], nodes[(c + 1) % 3]}) {  // twice where the edge is smooth
+          const Vec3d t1 = perpendicular(m.nodes[k].normal), t2 = m.nodes[k].normal.cross(t1);
+          const double p = e.dot(t1), q = e.dot(t2);
+          double sum = 0;
+          for (const auto& [vertex, K] : fits[k]) {
+            const double w = -0.125 / 4 * (p * p * K[0] + 2 * p * q * K[1] + q * q * K[2]);
+            all.push_back({vertex, w});
+            sum += w;
+          }
+          all.push_back({m.nodes[k].vertex, -sum});
+        }
+      }
+      std::sort(all.begin(), all.end(), [](const auto& l, const auto& r) { return l.vertex < r.vertex; });
+      for (const VertexWeight& w : all) {
+        if (weights_[i].empty() || weights_[i].back().vertex != w.vertex)
+          weights_[i].push_back(w);
+        else
+          weights_[i].back().weight += w.weight;
+      }
+    }
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return weights_.size(); }
+  [[nodiscard]] const std::vector<VertexWeight>& operator[](std::size_t edge) const noexcept {
+    return weights_[edge];
+  }
+  /// Number of the edge from corner c to c + 1 of triangle t.
+  [[nodiscard]] std::uint32_t edge(std::size_t t, std::size_t c) const noexcept { return of_[t][c]; }
+
+ private:
+  // Second derivatives at a node (11, 12, 22) by the displacement of each neighbour less the node's own [1/m^2].
+  using Fit = std::vector<std::pair<std::uint32_t, Vec3d>>;
+
+  // Weighted least squares, 1/d^2. Where the neighbours do not tell (two rows across a narrow strip), a small penalty on
+  // the second derivatives makes them small: 0.05^2 of the slopes' weight, 0.3 % of a derivative that is well seen.
+  [[nodiscard]] static std::vector<Fit> fit_nodes(const SolveMesh& m) {
+    constexpr double penalty = 0.05 * 0.05;
+    const auto put = [](std::vector<std::uint32_t>& list, std::uint32_t k) {
+      if (std::find(list.begin(), list.end(), k) == list.end()) list.push_back(k);
+    };
+    std::vector<std::vector<std::uint32_t>> ring(m.nodes.size());
+    for (const auto& t : m.nodes_of)
+      for (std::size_t c = 0; c < 3; ++c) {
+        put(ring[t[c]], t[(c + 1) % 3]);
+        put(ring[t[c]], t[(c + 2) % 3]);
+      }
+    std::vector<Fit> fits(m.nodes.size());
+    for (std::uint32_t k = 0; k < m.nodes.size(); ++k) {
+      std::vector<std::uint32_t> near = ring[k];
+      for (auto j : ring[k])
+        for (auto l : ring[j]) put(near, l);
+      const SolveMesh::Node& node = m.nodes[k];
+      const Vec3d &x = m.vertices[node.vertex], t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
+      using Five = Eigen::Matrix<double, 5, 1>;
+      Eigen::Matrix<double, 5, 5> A = Eigen::Matrix<double, 5, 5>::Zero();
+      std::vector<std::pair<std::uint32_t, Five>> rows;
+      for (auto j : near) {
+        const double facing = m.nodes[j].normal.dot(node.normal);
+        if (m.nodes[j].vertex == node.vertex || facing < 0.3) continue;  // round the corner
+        const Vec3d d = (m.vertices[m.nodes[j].vertex] - x) / node.size;
+        const double p = d.dot(t1), q = d.dot(t2), w = facing / d.squaredNorm();
+        Five row;
+        row << p, q, 0.5 * p * p, p * q, 0.5 * q * q;
+        A += w * w * row * row.transpose();
+        rows.push_back({m.nodes[j].vertex, w * w * row});
+      }
+      const double slopes = A(0, 0) + A(1, 1) + 1e-30;
+      A.diagonal().head<2>().array() += 1e-9 * slopes;
+      A.diagonal().tail<3>().array() += penalty * slopes;
+      const Eigen::LDLT<Eigen::Matrix<double, 5, 5>> solver(A);
+      for (const auto& [vertex, row] : rows)
+        fits[k].push_back({vertex, solver.solve(row).tail<3>() / (node.size * node.size)});
+    }
+    return fits;
+  }
+
+  std::vector<std::array<std::uint32_t, 3>> of_;
+  std::vector<std::vector<VertexWeight>> weights_;
+};
+
+}  // namespace palpate::detail

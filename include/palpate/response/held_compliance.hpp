@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Keeps a compliance away from zero, so that no force is larger than d / (least compliance). Per tick.
+
+#include <palpate/core/vector.hpp>
+
+#include <Eigen/Eigenvalues>
+
+namespace palpate::detail {
+
+/// Raises the eigenvalues of symmetric C (of fixed size: no heap) that are below `least` > 0 to it; the other modes
+/// stay. Continuous in C.
+template <class M>
+void hold_above(M& C, double least) noexcept {
+  const Eigen::SelfAdjointEigenSolver<M> eigen(C);
+  const auto& V = eigen.eigenvectors();
+  M missing = V;  // V max(least - lambda, 0)
+  for (Eigen::Index i = 0; i < C.cols(); ++i)
+    missing.col(i) *= (std::max)(least - eigen.eigenvalues()[i], 0.0);
+  C.noalias() += missing * V.transpose();
+}
+
+/// True when C - least I is positive definite (Sylvester).
+[[nodiscard]] inline bool is_above(const Mat3<double>& C, double least) noexcept {
+  const double a = C(0, 0) - least, b = C(1, 1) - least, c = C(2, 2) - least;
+  const double minor = a * b - C(1, 0) * C(1, 0);
+  const double det =
+      c * minor - a * C(2, 1) * C(2, 1) - b * C(2, 0) * C(2, 0) + 2 * C(1, 0) * C(2, 0) * C(2, 1);
+  return a > 0 && minor > 0 && det > 0;
+}
+
+}  // namespace palpate::detail
