@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 
 /// @file  An ellipsoid as a mesh of 1,000 to 100,000 vertices against the exact one: the force of a tool pressed into it
-/// converges; and how much the force clicks over a coarse mesh's edges with flat, interpolated and blended normals.
+/// converges, and so do the extremal points and the skeleton's shape; and how much the force clicks over a coarse mesh's edges with flat, interpolated and blended normals.
 
 #include <palpate/palpate.hpp>
 #include <palpate/surface/mesh_extremal_points.hpp>
@@ -44,6 +44,41 @@ std::vector<V> forces(const Object& object) {
   return result;
 }
 
+std::vector<V> ends_of(const auto& body) {
+  std::vector<V> ends;
+  for (const auto& point : extremal_points(body)) ends.push_back(point.position);
+  return ends;
+}
+
+// Displacement of the mesh's vertices by one contact, worked out with the extremal points and faces of `body`.
+template <class Body>
+std::vector<V> drawn(const Body& body, const MeshData<double>& mesh) {
+  using Beams = RegionSkeletons<Skeleton<double>>;
+  const Beams beams(Skeleton<double>(
+      ends_of(body), EulerBernoulli<double>(IsotropicElasticity<double>({.E = 1e5, .nu = 0.5})),
+      VolumePreserving<double>({.volume = egg.volume()})));
+  BeamSkeletonDeformation<Beams, PhongInterpolation<double>> model(
+      beams, PhongInterpolation<double>(make_partition(body, mesh)), AreaNeighbourhood<double>({}), mesh,
+      {.fixed = V(0, -0.04, 0)});
+  std::vector<V> now(mesh.vertices.size());
+  const VertexBuffer<double> buffer{.positions = now[0].data(), .position_stride = sizeof(V)};
+  model.write_rest(buffer);
+  const auto at = egg.closest(V(0.02, 0.04, 0.008));
+  ContactState<double> contact{};
+  contact.id = contact.points = 1;
+  contact.mode = ContactMode::sticking;
+  contact.centre = at.position - 0.003 * at.normal;
+  contact.normal = at.normal;
+  contact.displacement = -0.003 * at.normal;
+  contact.force = 2 * at.normal;
+  contact.friction = V::Zero();
+  contact.normal_force = 2;
+  contact.area = 1e-5;
+  (void)model.write(std::span<const ContactState<double>>(&contact, 1), buffer);
+  for (std::size_t v = 0; v < now.size(); ++v) now[v] -= mesh.vertices[v];
+  return now;
+}
+
 double error(const std::vector<V>& found, const std::vector<V>& expected) {
   double off = 0, all = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -84,6 +119,31 @@ TEST_CASE("stress: the force on an ellipsoid's mesh converges to the exact one w
   CHECK_RELATIVE(std::log(first / last) / std::log(first_edge / last_edge), 2, 0.1);
   // At the last size chords are up to 0.517^2 / (8 * 15) mm = 2e-6 m high, on depths of 1 to 4 mm.
   CHECK(last < 2e-3);
+}
+
+TEST_CASE(
+    "stress: extremal points and the skeleton's shape on an ellipsoid's mesh converge to the exact ones") {
+  const std::vector<V> exact = ends_of(egg);
+  std::printf("vertices: farthest extremal point [mm], shape's relative error\n");
+  double first_far = 0, first = 0, far = 0, last = 0;
+  for (const std::size_t n : {1000u, 4000u, 16000u, 100000u}) {
+    const MeshData<double> mesh = egg.mesh(n);
+    const MeshSurface<double> body{TriangleMesh<double>(mesh)};
+    const std::vector<V> found = ends_of(body);
+    far = 0;
+    for (const V& end : exact) {
+      double nearest = 1;
+      for (const V& other : found) nearest = (std::min)(nearest, (end - other).norm());
+      far = (std::max)(far, nearest);
+    }
+    last = error(drawn(body, mesh), drawn(egg, mesh));
+    std::printf("%6zu: %.2f %.4f\n", mesh.vertices.size(), 1e3 * far, last);
+    if (first == 0) first_far = far, first = last;
+  }
+  // Edges shrink by ten. A point is found to a part of an edge, which part depends on how the vertices lie: half of order 1
+  // is asked for.
+  CHECK(far < first_far / 3);
+  CHECK(last < first / 3);
 }
 
 TEST_CASE("stress: clicks of a point's force over the edges of coarse meshes") {
