@@ -36,12 +36,13 @@ int __wrap_posix_memalign(void** block, std::size_t alignment, std::size_t size)
 #define PALPATE_TEST_ALIGNED_ALLOC std::aligned_alloc
 #endif
 
-// The other forms of operator new call one of these two.
+// The other forms of operator new call one of these two; not so the one without exceptions under a sanitizer.
 void* operator new(std::size_t size) {
   ++count;
   if (void* block = PALPATE_TEST_MALLOC(size != 0 ? size : 1)) return block;
   std::abort();  // out of memory in a test
 }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return operator new(size); }
 void* operator new(std::size_t size, std::align_val_t align) {
   ++count;
   const auto alignment = static_cast<std::size_t>(align);
