@@ -25,7 +25,11 @@ trap 'rm -f "$report"' EXIT
       n = split(layers, names, " ")
       for (i = 1; i <= n; i++) rank[names[i]] = i
       while ((getline line < "docs/references.bib") > 0)
-        if (match(line, /^@[a-z]+[{][^,]+,/)) { sub(/^@[a-z]+[{]/, "", line); sub(/,.*/, "", line); key[line] = 1 }
+        if (match(line, /^@[a-z]+[{][^,]+,/)) {
+          sub(/^@[a-z]+[{]/, "", line); sub(/,.*/, "", line)
+          if (line in key) print "docs/references.bib: " line " is there twice"
+          key[line] = 1
+        }
     }
     FNR == 1 {
       if (last != "") end_of_file()

@@ -71,4 +71,7 @@ echo 'CHECK(x == doctest::Approx(1));' >tests/bad_test.cpp
 expect 'CHECK_RELATIVE or CHECK_ABSOLUTE'
 echo 'std::mt19937 random(std::random_device{}());' >tests/bad_test.cpp
 expect 'seeded generators only'
+rm tests/bad_test.cpp
+printf '@book{known2000,\n}\n' >>docs/references.bib
+expect 'known2000 is there twice'
 exit $failures
