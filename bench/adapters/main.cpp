@@ -8,60 +8,21 @@
 
 #include <palpate/adapters/bullet.hpp>
 #include <palpate/adapters/fcl.hpp>
-#include <palpate/palpate.hpp>
 
 #include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 #include <fcl/narrowphase/collision.h>
 
 #include <support/no_heap.hpp>
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
+#include "mesh_scene.hpp"
+
 #include <cstdio>
 #include <cstring>
 #include <vector>
 
 namespace {
 
-using namespace palpate;
-using S = double;
-using V = Vec3<S>;
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point start) {
-  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-}
-
-double median(std::vector<double>& times) {
-  const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
-  std::nth_element(times.begin(), middle, times.end());
-  return *middle;
-}
-
-MeshData<S> body_mesh() {
-  MeshData<S> mesh = Sphere<S>({.radius = 1}).mesh(20000);
-  for (V& v : mesh.vertices) {
-    const V n = v.normalized();
-    v *= 0.1 * (1 + 0.33 * std::sin(4 * n.x()) * std::cos(3 * n.y() + 1) + 0.1 * n.z());
-  }
-  return mesh;
-}
-
-constexpr S ball = 0.02, pressed = 2e-3;
-
-/// 20 pieces of path around the body, 50 um a tick.
-std::vector<Pose<S>> path(const MeshSurface<S>& body, int ticks) {
-  std::vector<Pose<S>> poses;
-  for (int i = 0; i < ticks; ++i) {
-    const S t = 0.314 * (i / (ticks / 20)) + 5e-4 * (i % (ticks / 20));
-    const V out = V(std::cos(t), 0.4 * std::sin(3 * t), std::sin(t)).normalized();
-    Pose<S> X;
-    X.translation = body.raycast(out, -out).position + (ball - pressed) * out;
-    poses.push_back(X);
-  }
-  return poses;
-}
+using namespace bench;
 
 /// FCL's own answer to the question.
 struct Collide {
@@ -78,9 +39,8 @@ struct Collide {
 template <class Object>
 void row(std::FILE* file, const char* depth, const char* search, const Object& object,
          const std::vector<Pose<S>>& poses) {
-  const ToolPoints<S> tool(TriangleMesh<S>(Sphere<S>({.radius = ball}).mesh(1016)), {.contact_area = 1e-4});
-  ContactSolver<Object, DuffingForce<S>, Frictionless<S>, SingleRegion<>> solver(
-      {object, tool, DuffingForce<S>({.c1 = 40, .c3 = 3e8}), {}, {}, {}});
+  auto solver = ball_solver(object);
+  const ToolPoints<S>& tool = solver.tool();
   std::vector<double> searches, ticks;
   searches.reserve(poses.size());
   ticks.reserve(poses.size());
@@ -100,8 +60,8 @@ void row(std::FILE* file, const char* depth, const char* search, const Object& o
     allocations += heap.allocations();
   }
   for (std::FILE* out : {file, stdout}) {
-    std::fprintf(out, "%s,%s,%.1f,%.2f,%.2f,%.1f,%.8g\n", depth, search, candidates / count, median(searches),
-                 median(ticks), static_cast<double>(allocations) / count, force / count);
+    std::fprintf(out, "%s,%s,%.1f,%.2f,%.2f,%.1f,%.8g\n", depth, search, candidates / count, quantile(searches, 0.5),
+                 quantile(ticks, 0.5), static_cast<double>(allocations) / count, force / count);
   }
 }
 
@@ -117,10 +77,10 @@ int main(int argc, char** argv) {
     std::perror(argv[1]);
     return 1;
   }
-  const MeshData<S> data = body_mesh();
+  const MeshData<S> data = body_mesh(40000);
   const MeshSurface<S> body{TriangleMesh<S>(data)};
   const SampledSurface<MeshSurface<S>> samples(body, {.spacing = 2e-3});
-  const std::vector<Pose<S>> poses = path(body, argc == 3 ? 200 : 2000);
+  const std::vector<Pose<S>> poses = glide_path(body, argc == 3 ? 200 : 2000);
 
   std::vector<fcl::Triangle> triangles;
   std::vector<int> indices;

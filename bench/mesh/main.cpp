@@ -5,13 +5,8 @@
 /// Columns: set-up, refit of the tree after 1 in 100 vertices moved and after all did, one closest point from within 5 mm
 /// of the surface, the force tick on the mesh itself and on its samples, how many points touch, and the force of both.
 
-#include <palpate/palpate.hpp>
-#include <palpate/surface/mesh_surface.hpp>
-#include <palpate/surface/sampled_surface.hpp>
+#include "mesh_scene.hpp"
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <random>
@@ -19,50 +14,18 @@
 
 namespace {
 
-using namespace palpate;
-using S = double;
-using V = Vec3<S>;
-using Clock = std::chrono::steady_clock;
-
-double since(Clock::time_point start) {
-  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-}
-
-double quantile(std::vector<double>& times, double part) {
-  const auto at = times.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(times.size() - 1));
-  std::nth_element(times.begin(), at, times.end());
-  return *at;
-}
-
-MeshData<S> body_mesh(std::size_t triangles) {
-  MeshData<S> mesh = Sphere<S>({.radius = 1}).mesh(triangles / 2);
-  for (V& v : mesh.vertices) {
-    const V n = v.normalized();
-    v *= 0.1 * (1 + 0.33 * std::sin(4 * n.x()) * std::cos(3 * n.y() + 1) + 0.1 * n.z());
-  }
-  return mesh;
-}
+using namespace bench;
 
 struct Ticks {
   double p50, p99, touching, force;
 };
 
-constexpr S ball = 0.02, pressed = 2e-3;
-
 template <class Object>
 Ticks glide(const Object& object, const MeshSurface<S>& body, int ticks) {
-  const ToolPoints<S> tool(TriangleMesh<S>(Sphere<S>({.radius = ball}).mesh(1016)), {.contact_area = 1e-4});
-  ContactSolver<Object, DuffingForce<S>, Frictionless<S>, SingleRegion<>> solver(
-      {object, tool, DuffingForce<S>({.c1 = 40, .c3 = 3e8}), {}, {}, {}});
+  auto solver = ball_solver(object);
   std::vector<double> times;
   double touching = 0, force = 0;
-  for (int i = 0; i < ticks; ++i) {
-    // A piece of path around the body, 20 of them; each glides by 50 um a tick.
-    const S t = 0.314 * (i / (ticks / 20)) + 5e-4 * (i % (ticks / 20));
-    const V out = V(std::cos(t), 0.4 * std::sin(3 * t), std::sin(t)).normalized();
-    const auto hit = body.raycast(V(out), -out);
-    Pose<S> X;
-    X.translation = hit.position + (ball - pressed) * out;
+  for (const Pose<S>& X : glide_path(body, ticks)) {
     const auto start = Clock::now();
     const auto result = solver.tick(X);
     times.push_back(since(start));
