@@ -4,6 +4,7 @@
 /// @file  Ellipsoid: the paper's elastic body, with a closest point that holds from the centre to 1e6 m.
 
 #include <palpate/surface/lattice_mesh.hpp>
+#include <palpate/surface/one_lane.hpp>
 #include <palpate/surface/shape_tools.hpp>
 
 namespace palpate {
@@ -185,12 +186,11 @@ class Ellipsoid {
   template <int N>
   PALPATE_FLATTEN [[nodiscard]] bool near_surface(const S* x, const S* y, const S* z, S* depth, S* nx, S* ny,
                                                   S* nz) const noexcept {
-    using Lanes = Eigen::Array<S, N, 1>;
-    using In = Eigen::Map<const Lanes>;
-    using Out = Eigen::Map<Lanes>;
+    using Lanes = detail::Some<S, N>;
     const Vec3<S> j = slope_.cwiseAbs2();
-    const Lanes zx = (In(x) - p_.centre.x()) * inverse_.x(), zy = (In(y) - p_.centre.y()) * inverse_.y(),
-                zz = (In(z) - p_.centre.z()) * inverse_.z();
+    const Lanes zx = (detail::load<S, N>(x) - p_.centre.x()) * inverse_.x(),
+                zy = (detail::load<S, N>(y) - p_.centre.y()) * inverse_.y(),
+                zz = (detail::load<S, N>(z) - p_.centre.z()) * inverse_.z();
     Lanes qx = zx * zx, qy = zy * zy, qz = zz * zz, G = qx + qy + qz, f = G - S(1);
     const Lanes within = detail::one_if_positive<Lanes, S>(-f, S(1));
     const bool usable = is_finite(S(G.sum())) && S(G.minCoeff()) > S(0.25);
@@ -230,10 +230,10 @@ class Ellipsoid {
     }
     qx *= slope_.x(), qy *= slope_.y(), qz *= slope_.z();
     const Lanes m = (qx * qx + qy * qy + qz * qz).sqrt(), r = within * m.inverse();
-    Out{depth} = (s * within) * (m * -min_);
-    Out{nx} = qx * r;
-    Out{ny} = qy * r;
-    Out{nz} = qz * r;
+    detail::store((s * within) * (m * -min_), depth);
+    detail::store(qx * r, nx);
+    detail::store(qy * r, ny);
+    detail::store(qz * r, nz);
     return settled;
   }
 
