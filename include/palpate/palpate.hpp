@@ -32,6 +32,7 @@
 // displacement to force
 #include <palpate/force/concept.hpp>
 #include <palpate/force/duffing.hpp>
+#include <palpate/force/hertz.hpp>
 #include <palpate/force/linear.hpp>
 #include <palpate/force/power_law.hpp>
 #include <palpate/force/tabulated.hpp>
@@ -66,6 +67,7 @@
 // one tick
 #include <palpate/solver/contact_solver.hpp>
 #include <palpate/solver/duffing_map.hpp>
+#include <palpate/solver/hertz_map.hpp>
 
 // out to the hand
 #include <palpate/device/energy_limit.hpp>

@@ -5,6 +5,7 @@
 
 #include <palpate/force/damped.hpp>
 #include <palpate/force/duffing.hpp>
+#include <palpate/force/hertz.hpp>
 #include <palpate/force/linear.hpp>
 #include <palpate/force/power_law.hpp>
 #include <palpate/force/saturated.hpp>
@@ -60,6 +61,17 @@ struct PowerLawExample : DuffingExample<1> {
     T k = S(9.7e4);
     for (int i = 0; i < TwiceP; ++i) k *= std::sqrt(length);
     return PowerLawForce<T>({.k = k / force, .p = T(TwiceP) / T(2)});
+  }
+};
+
+// C in nanometres per newton: 0 a half-space, 2e5 with as much depth in the body as in the contact, 1e8 a spring.
+template <int Compliance>
+struct HertzExample : DuffingExample<1> {
+  static constexpr bool exact_units = false;  // cbrt() promises nothing about powers of 2
+  template <class S, class T>
+  static HertzForce<T> make(T length, T force) {
+    const T k = S(9.7e4), C = S(1e-9) * S(Compliance);
+    return HertzForce<T>({.k = k * length * std::sqrt(length) / force, .compliance = C * force / length});
   }
 };
 
@@ -126,6 +138,9 @@ PALPATE_FORCE_LAW_SUITE(LinearExample);
 PALPATE_FORCE_LAW_SUITE(PowerLawExample<2>);
 PALPATE_FORCE_LAW_SUITE(PowerLawExample<3>);
 PALPATE_FORCE_LAW_SUITE(PowerLawExample<4>);
+PALPATE_FORCE_LAW_SUITE(HertzExample<0>);
+PALPATE_FORCE_LAW_SUITE(HertzExample<200000>);
+PALPATE_FORCE_LAW_SUITE(HertzExample<100000000>);
 PALPATE_FORCE_LAW_SUITE(TabulatedExample);
 PALPATE_FORCE_LAW_SUITE(SaturatedExample<DuffingExample<1>>);
 PALPATE_FORCE_LAW_SUITE(SaturatedExample<PowerLawExample<3>>);

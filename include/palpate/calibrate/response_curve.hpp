@@ -33,4 +33,25 @@ template <Real S>
   return curve;
 }
 
+/// The same for a frictionless ball, `contact.depth` > 0 at most. Its force starts with a power of the depth, so weights are such
+/// that relative errors count.
+template <Real S>
+[[nodiscard]] std::vector<CurvePoint> response_curve(const ResponseField& field,
+                                                     const SphereContact<S>& contact,
+                                                     std::size_t count = 20) {
+  const char* where = "response_curve";
+  require_positive(contact.depth, where, "depth [m] must be > 0");
+  require_positive(contact.radius, where, "radius [m] must be > 0");
+  if (count < 2) fail(where, "count must be >= 2", double(count));
+  ResponseTick<1> tick(field);
+  std::vector<CurvePoint> curve;
+  for (std::size_t i = 1; i <= count; ++i) {
+    SphereContact<S> pressed = contact;
+    pressed.depth *= static_cast<S>(double(i) / double(count));
+    const double force = tick.solve(pressed).force;
+    curve.push_back({double(pressed.depth), force, force > 0 ? 1 / (force * force) : 0});
+  }
+  return curve;
+}
+
 }  // namespace palpate

@@ -1,60 +1,94 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  A response field's force as the force law of the contact solver: Duffing's coefficients over the whole object,
-/// fitted to what the field answers. Set-up only.
+/// @file  A response field's force as the force law of the contact solver: a law's coefficients over the whole object, fitted to
+/// what the field answers. Set-up only.
 
 #include <palpate/calibrate/duffing_fit.hpp>
+#include <palpate/calibrate/hertz_fit.hpp>
 #include <palpate/calibrate/response_curve.hpp>
 #include <palpate/solver/duffing_map.hpp>
+#include <palpate/solver/hertz_map.hpp>
 #include <palpate/surface/sampled_surface.hpp>
 
 namespace palpate {
 
 template <Real S>
 struct ResponseMapParams {
-  S radius;  ///< a [m] > 0: of the patch that the tool presses, sqrt(A/pi) of its contact area
+  S radius;  ///< > 0 [m]: a of the patch that the tool presses, sqrt(A/pi) of its contact area; or the ball's
   S depth;   ///< [m] > 0: the law is fitted from 0 to here
   S spacing;  ///< [m] > 0: of the map's nodes; a third to a half of `field.mesh().length`, the solve edge, is apt
 };
 
 /// What was fitted, and how well.
-template <Real S>
+template <ForceMap Map>
 struct ResponseMap {
-  DuffingMap<S> map;                ///< for ContactSolver
+  using S = typename Map::Scalar;
+  Map map;                          ///< for ContactSolver
   double worst_rms = 0;             ///< of all fits: root mean square residual over the curve's own, relative
   Vec3<S> where = Vec3<S>::Zero();  ///< the place of that fit on the surface [m]
 };
 
+namespace detail {
+/// fit(point of the surface) -> DuffingFit or the like, for each node of a grid over the body.
+template <ForceMap Map, SampledBody B, class Fit>
+[[nodiscard]] ResponseMap<Map> fit_map(const B& body, const ResponseMapParams<typename B::Scalar>& params,
+                                       const char* where, const Fit& fit) {
+  using S = typename B::Scalar;
+  require_positive(params.radius, where, "radius [m] must be > 0");
+  require_positive(params.depth, where, "depth [m] must be > 0");
+  double worst = 0;
+  Vec3<S> worst_at = Vec3<S>::Zero();
+  Map map({.spacing = params.spacing, .lower = body.lower(), .upper = body.upper()},
+          [&](const Vec3<S>& node) {
+            const SurfacePoint<S> at = body.closest(node);
+            const auto fitted = fit(at);
+            if (fitted.fit.relative_rms > worst) {
+              worst = fitted.fit.relative_rms;
+              worst_at = at.position;
+            }
+            const auto& [first, second] = fitted.params;
+            return typename Map::Coefficients{static_cast<S>(first), static_cast<S>(second)};
+          });
+  return {std::move(map), worst, worst_at};
+}
+}  // namespace detail
+
 /// The law F(D) that `field` has for a patch pressed along the normal, at the nodes of a grid over the body, each for the
 /// surface's point closest to it. Friction and stick-slip work on top as on any law. Left out: the field's own tangential
-/// stiffness (the solver takes the normal law's), pushes off the normal, what several contacts do to each other, and
-/// contacts that grow with depth (`ResponseTick::solve` has the sphere's). Reports bad parameters, and a place whose curve
-/// Duffing's law does not fit.
+/// stiffness (the solver takes the normal law's), pushes off the normal, and what several contacts do to each other.
+/// Reports bad parameters, and a place whose curve Duffing's law does not fit.
 template <SampledBody B>
-[[nodiscard]] ResponseMap<typename B::Scalar> response_map(
+[[nodiscard]] ResponseMap<DuffingMap<typename B::Scalar>> response_map(
     const ResponseField& field, const B& body, const ResponseMapParams<typename B::Scalar>& params) {
   using S = typename B::Scalar;
-  require_positive(params.radius, "response_map", "radius [m] must be > 0");
-  require_positive(params.depth, "response_map", "depth [m] must be > 0");
-  double worst = 0;
-  Vec3<S> where = Vec3<S>::Zero();
-  DuffingMap<S> map({.spacing = params.spacing, .lower = body.lower(), .upper = body.upper()},
-                    [&](const Vec3<S>& node) {
-                      const SurfacePoint<S> at = body.closest(node);
-                      const DuffingFit fitted =
-                          fit_duffing(response_curve<S>(field, {.place = at.position,
-                                                                .normal = at.normal,
-                                                                .radius = params.radius,
-                                                                .displacement = -params.depth * at.normal}));
-                      if (fitted.fit.relative_rms > worst) {
-                        worst = fitted.fit.relative_rms;
-                        where = at.position;
-                      }
-                      return typename DuffingForce<S>::Params{static_cast<S>(fitted.params.c1),
-                                                              static_cast<S>(fitted.params.c3)};
-                    });
-  return {std::move(map), worst, where};
+  return detail::fit_map<DuffingMap<S>>(body, params, "response_map", [&](const SurfacePoint<S>& at) {
+    return fit_duffing(response_curve<S>(field, {.place = at.position,
+                                                 .normal = at.normal,
+                                                 .radius = params.radius,
+                                                 .displacement = -params.depth * at.normal}));
+  });
+}
+
+/// The same for a contact that grows with depth: a ball of `params.radius`, or another smooth tool with that radius of
+/// curvature, as one point (`SinglePoint`, D its depth). A body without curvature() counts as flat: right while
+/// the ball is small beside the body's own radii.
+template <SampledBody B>
+[[nodiscard]] ResponseMap<HertzMap<typename B::Scalar>> ball_response_map(
+    const ResponseField& field, const B& body, const ResponseMapParams<typename B::Scalar>& params) {
+  using S = typename B::Scalar;
+  return detail::fit_map<HertzMap<S>>(body, params, "ball_response_map", [&](const SurfacePoint<S>& at) {
+    S curvature = S(0);
+    if constexpr (HasCurvature<B>) {
+      const Curvature<S> k = body.curvature(at.position);
+      curvature = k.k1 + k.k2;
+    }
+    return fit_hertz(response_curve<S>(field, SphereContact<S>{.place = at.position,
+                                                               .normal = at.normal,
+                                                               .radius = params.radius,
+                                                               .curvature = curvature,
+                                                               .depth = params.depth}));
+  });
 }
 
 }  // namespace palpate

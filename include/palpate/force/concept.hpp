@@ -8,6 +8,7 @@
 /// | `DuffingForce`       | F = c1 D + c3 D^3, eq. (3)  | the default: stiffens (c3 > 0) or softens (c3 < 0)        |
 /// | `LinearForce`        | F = k D                     | a baseline, or a virtual wall                             |
 /// | `PowerLawForce`      | F = k D^p                   | Hertz (p = 3/2), cone (p = 2)                             |
+/// | `HertzForce`         | D = (F/k)^(2/3) + C F       | a ball on a body of finite size                           |
 /// | `TabulatedForce`     | monotone curve through data | measured or computed force-displacement curves            |
 /// | `SaturatedForce<L>`  | min(L, limit), smooth       | decorator: caps what a law can ask of the device          |
 /// | `DampedForce<L>`     | L + rate term, eq. (1)      | decorator: the transient term; the only one that needs dt |
