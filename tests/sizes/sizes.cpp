@@ -5,6 +5,7 @@
 #include <palpate/core/fixed_vector.hpp>
 #include <palpate/core/pose.hpp>
 #include <palpate/equivalent/contact_state.hpp>
+#include <palpate/equivalent/region_sum.hpp>
 #include <palpate/surface/concept.hpp>
 
 using namespace palpate;
@@ -15,6 +16,7 @@ using namespace palpate;
 constexpr Size PALPATE_TEST_SIZES[] = {
     ROWS(Vec3),  ROWS(Mat3),        ROWS(Pose),     ROWS(Wrench),   ROWS(SurfacePoint),
     ROWS(Penetration), ROWS(RayHit), ROWS(Curvature), ROWS(MeshData), ROWS(ContactState),
+    ROWS(PointLanes), ROWS(PenetrationLanes), ROWS(detail::LaneArray), ROWS(LaneSum),
     ROW(FixedVector<ContactState<float>, 4>), ROW(FixedVector<ContactState<double>, 4>),
     {nullptr, 0, 0},
 };

@@ -24,7 +24,7 @@ namespace palpate {
 /// two cross products for six neighbours instead of six, and every product is of short vectors. No equation of the
 /// paper; elementary geometry.
 ///
-/// Up to a register's worth of neighbouring vertices whose rings are the same but for a shift by one are a run, and one
+/// Up to `lanes` neighbouring vertices whose rings are the same but for a shift by one are a run, and one
 /// calculation without gathering. In a mesh laid out in rows, as all meshes of this library are, most vertices are
 /// in full runs.
 ///
@@ -34,7 +34,7 @@ class VertexNormals {
  public:
   static constexpr std::size_t lanes = detail::lanes<S>;
   /// So many entries past the last vertex's coordinates are read, and not used.
-  static constexpr std::size_t padding = 32 / sizeof(S);
+  static constexpr std::size_t padding = lanes;
 
   struct Run {
     std::uint32_t first = 0, count = 0;  ///< vertices, up to `lanes`

@@ -75,8 +75,9 @@ struct RegionSum {
 };
 
 /// A RegionSum in the making, `lane_count` points at a time: lane i adds up the points i of all leaves, total() adds the lanes.
+/// By the cache line, whatever the vector flags.
 template <Real S>
-class LaneSum {
+class alignas(64) LaneSum {
  public:
   /// About this centre of mass [m].
   explicit LaneSum(const Vec3<S>& centre_of_mass) noexcept : centre_(centre_of_mass) {}
@@ -128,9 +129,9 @@ class LaneSum {
 
   [[nodiscard]] static Lanes3 zero() noexcept { return {Lanes::Zero(), Lanes::Zero(), Lanes::Zero()}; }
 
-  Vec3<S> centre_;
   Lanes3 force_ = zero(), torque_ = zero(), moment_ = zero();
   Lanes magnitude_ = Lanes::Zero(), spread_ = Lanes::Zero();
+  Vec3<S> centre_;
   RegionSum<S> sum_{};  // what is not a plain sum: the deepest point and the count
 };
 

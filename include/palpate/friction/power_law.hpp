@@ -67,6 +67,14 @@ class PowerLawFriction {
     } else {
       max_coefficient_ = std::numeric_limits<S>::infinity();
     }
+    // A little lower than where the limits meet, so that below it mu_D F_n is the smaller one in spite of rounding. Below F_0
+    // they are proportional.
+    constexpr S guard = S(1) - S(32) * std::numeric_limits<S>::epsilon();
+    const S ratio = p_.K / p_.mu_dynamic * guard;
+    if (p_.beta < S(1)) {
+      meet_ = std::pow(ratio, S(1) / (S(1) - p_.beta));
+      if (!(meet_ > p_.linear_below)) meet_ = S(0);
+    }
   }
 
   /// K in N^(1-beta) from a value given with forces in another unit: K_SI = K_u u^(1-beta), u = `unit` [N].
@@ -81,12 +89,17 @@ class PowerLawFriction {
     if (!is_positive(normal_force)) return S(0);
     if (p_.beta == S(1)) return p_.K * normal_force;
     if (normal_force < p_.linear_below) return max_coefficient_ * normal_force;
+    if (p_.beta == S(0.75)) {  // the paper's; half the time of a power
+      const S root = std::sqrt(normal_force);
+      return p_.K * (root * std::sqrt(root));
+    }
     return p_.K * std::pow(normal_force, p_.beta);
   }
   /// Friction while sliding [N] at the normal force F_n [N]: min(mu_D F_n, f_max).
   [[nodiscard]] S sliding_limit(S normal_force) const noexcept {
     if (!is_positive(normal_force)) return S(0);
-    return (std::min)(p_.mu_dynamic * normal_force, static_limit(normal_force));
+    const S dynamic = p_.mu_dynamic * normal_force;
+    return normal_force < meet_ ? dynamic : (std::min)(dynamic, static_limit(normal_force));
   }
   /// sup f_max / F_n [-] = K F_0^(beta-1). Infinite for the printed power law (F_0 = 0, beta < 1).
   [[nodiscard]] S max_coefficient() const noexcept { return max_coefficient_; }
@@ -95,6 +108,7 @@ class PowerLawFriction {
  private:
   Params p_;
   S max_coefficient_;
+  S meet_ = S(0);  // below it [N] sliding friction is mu_D F_n
 };
 
 static_assert(FrictionLaw<PowerLawFriction<float>> && FrictionLaw<PowerLawFriction<double>>);

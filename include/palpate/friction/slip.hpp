@@ -85,7 +85,8 @@ struct ByComponents {
   }
   /// The largest stretch <= trial [m] whose tangential force is within limit(F_cn).
   template <ForceLaw L, class Limit, Real S = typename L::Scalar>
-  [[nodiscard]] static S admissible(const L& law, S /*depth*/, S normal_force, S trial, const Limit& limit) noexcept {
+  [[nodiscard]] static S admissible(const L& law, S /*depth*/, S normal_force, S trial,
+                                    const Limit& limit) noexcept {
     const S most = limit(normal_force);
     if (law.force(trial) <= most) return trial;  // sticks: no inverse needed
     return (std::min)(trial, law.depth(most));
@@ -117,7 +118,8 @@ struct Radial {
     return detail::root_below(high, [&](S t) { return force(law, depth, S(0), t).tangential - f; });
   }
   template <ForceLaw L, class Limit, Real S = typename L::Scalar>
-  [[nodiscard]] static S admissible(const L& law, S depth, S normal_force, S trial, const Limit& limit) noexcept {
+  [[nodiscard]] static S admissible(const L& law, S depth, S normal_force, S trial,
+                                    const Limit& limit) noexcept {
     const auto excess = [&](S t) {
       const SkewedForce<S> f = force(law, depth, normal_force, t);
       return f.tangential - limit(f.normal);
@@ -128,7 +130,6 @@ struct Radial {
   [[nodiscard]] static S energy(const L& law, S depth, S stretch) noexcept {
     return law.energy(std::hypot(depth, stretch)) - law.energy(depth);
   }
-
 };
 
 /// What stick and slip remember of one contact between ticks.
@@ -193,15 +194,19 @@ struct ReturnMapping {
     constexpr S rest = S(0.9);
     const SkewedForce<S> stuck = Skew::force(law, trial.depth, trial.normal_force, trial.stretch);
     const auto limit = [&](S normal_force) {
-      return state.strength * (state.sliding ? friction.sliding_limit(normal_force) : friction.static_limit(normal_force));
+      return state.strength *
+             (state.sliding ? friction.sliding_limit(normal_force) : friction.static_limit(normal_force));
     };
     const auto settle = [&] {
-      const S most = limit(stuck.normal);
-      if (state.springs > S(1) && state.springs * stuck.tangential > most) {
-        state.springs = (std::max)(most / stuck.tangential, S(1));
+      if (state.springs > S(1)) {
+        const S most = limit(stuck.normal);
+        if (state.springs * stuck.tangential > most)
+          state.springs = (std::max)(most / stuck.tangential, S(1));
       }
-      return Skew::admissible(law, trial.depth, trial.normal_force, trial.stretch,
-                              [&](S normal_force) { return limit(normal_force) / state.springs; });
+      return Skew::admissible(law, trial.depth, trial.normal_force, trial.stretch, [&](S normal_force) {
+        const S most = limit(normal_force);
+        return state.springs > S(1) ? most / state.springs : most;
+      });
     };
     const auto static_over_sliding = [&](S stretch) {
       const S normal = Skew::force(law, trial.depth, trial.normal_force, stretch).normal;
@@ -218,7 +223,8 @@ struct ReturnMapping {
     if (!state.sliding && (stretch < trial.stretch || state.springs < springs)) {
       state.sliding = true;
       // A sliding limit next to nothing must not make the ratio infinite.
-      state.strength = (std::min)(state.strength * static_over_sliding(stretch), S(1) / (std::numeric_limits<S>::min)());
+      state.strength =
+          (std::min)(state.strength * static_over_sliding(stretch), S(1) / (std::numeric_limits<S>::min)());
       state.slid = S(0);
     }
     if (state.strength > S(1) && stretch > S(0)) {

@@ -26,16 +26,11 @@ struct alignas(64) Block {
 
 namespace detail {
 
-#if defined(__AVX__)
-inline constexpr std::size_t register_bytes = 32;
-#else
-inline constexpr std::size_t register_bytes = 16;
-#endif
-
-/// A vector register's worth of a block; a block is a whole number of them. For what compilers leave scalar at -O2:
-/// minima and maxima, short loops, addresses they cannot tell apart.
+/// One or two vector registers' worth of a block; a block is a whole number of them. For what compilers leave scalar at -O2:
+/// minima and maxima, short loops, addresses they cannot tell apart. The same whatever the vector flags: runs that one file set up
+/// (`VertexNormals`) are walked by another.
 template <Real S>
-inline constexpr std::size_t lanes = register_bytes / sizeof(S);
+inline constexpr std::size_t lanes = 32 / sizeof(S);
 template <Real S>
 using Lanes = Eigen::Array<S, static_cast<int>(lanes<S>), 1>;
 

@@ -49,7 +49,7 @@ struct TickResult {
 /// | role       | parameter  | ships                                                               | default      |
 /// |------------|------------|---------------------------------------------------------------------|--------------|
 /// | object     | `Object`   | Sphere, Ellipsoid, Box, Cylinder, Superellipsoid, MeshSurface, SampledSurface, DeformedSurface | |
-/// | force law  | `Force`    | DuffingForce, LinearForce, PowerLawForce, TabulatedForce, decorators; DuffingMap | |
+/// | force law  | `Force`    | DuffingForce, LinearForce, PowerLawForce, HertzForce, TabulatedForce, decorators; DuffingMap, HertzMap | |
 /// | friction   | `Friction` | Frictionless, CoulombFriction, PowerLawFriction                     | Frictionless |
 /// | regions    | `Contacts` | SinglePoint, SingleRegion, Regions<N>                               | SinglePoint  |
 /// | wrench     | `Acting`   | AtContact, AtMassCentre                                             | AtContact    |
@@ -213,7 +213,7 @@ class ContactSolver {
       }
       const AnchoredForce<S> held = advance<typename Friction::Slip, typename Friction::Skew>(
           stuck.anchor, friction_, detail::law_at(force_, contact.centre), X, normal, contact.centre, depth, normal_force);
-      if (normal_force > S(0)) sum.scale(held.normal_force / normal_force);
+      if (held.normal_force != normal_force && normal_force > S(0)) sum.scale(held.normal_force / normal_force);
       stuck.friction = held.friction;
       stuck.depth = depth;
       contact.mode = stuck.anchor.slip.sliding ? ContactMode::sliding : ContactMode::sticking;

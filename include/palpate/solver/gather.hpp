@@ -70,7 +70,7 @@ template <Real S>
 
 /// What a leaf's points weigh: m_i/m up to the sharing's norm [-], and 1/A_i [1/m^2].
 template <Real S>
-struct LeafShare {
+struct alignas(64) LeafShare {
   std::array<S, lane_count> weight, per_area;
 };
 template <class Sharing, Real S>
@@ -194,7 +194,6 @@ class Collector<Regions<N, Sharing>, S> {
           Leaf& leaf = leaf_[leaves];
           if (!detail::penetrate(object, x, points, leaf.in)) return;
           leaf.begin = begin;
-          leaf.x = x;
           ++leaves;
           for (std::uint32_t i = 0; i < lanes; ++i) {
             point_[count] = begin + i;  // without a branch: overwritten by the next one unless it touches
@@ -206,24 +205,24 @@ class Collector<Regions<N, Sharing>, S> {
         tracker_.update({point_.data(), count}, [&](std::size_t i) { return X * tool.point(point_[i]); });
     if (count == 0) return Status::ok;
     if (tracker_.changed()) find_slots(leaves, count);
-    std::size_t next = 0;  // touching point
     const Vec3<S> centre_of_mass = X * tool.centre_of_mass();
     for (std::size_t slot = 0; slot < N; ++slot) {
       const std::uint64_t bit = std::uint64_t(1) << slot;
       if ((met_ & bit) == 0) continue;
       LaneSum<S> sum(centre_of_mass);
-      next = 0;
       for (std::size_t k = 0; k < leaves; ++k) {
         const Leaf& leaf = leaf_[k];
-        if (leaf.slots == bit) detail::add_leaf(share_[leaf.begin / lanes], force, leaf.x, leaf.in, sum);
-        if (leaf.slots == bit || (leaf.slots & bit) == 0) continue;
-        PenetrationLanes<S> own = leaf.in;
-        for (std::uint32_t i = 0; i < lanes; ++i) {
-          while (next < count && point_[next] < leaf.begin + i) ++next;
-          if (next == count || point_[next] != leaf.begin + i || tracker_.slot_of()[next] != slot)
-            own.depth[i] = S(0);
+        if ((leaf.slots & bit) == 0) continue;
+        // Placed anew: less work than to keep them, once other programs' data have taken the caches.
+        const PointLanes<S> x = detail::place(X, tool.lanes(leaf.begin));
+        if (leaf.slots == bit) {
+          detail::add_leaf(share_[leaf.begin / lanes], force, x, leaf.in, sum);
+          continue;
         }
-        detail::add_leaf(share_[leaf.begin / lanes], force, leaf.x, own, sum);
+        PenetrationLanes<S> own = leaf.in;
+        for (std::uint32_t i = 0; i < lanes; ++i)
+          own.depth[i] = leaf.slot[i] == slot ? own.depth[i] : S(0);
+        detail::add_leaf(share_[leaf.begin / lanes], force, x, own, sum);
       }
       sums[slot] = sum.total();
       sums[slot].scale(Sharing::norm(static_cast<S>(sums[slot].points)));
@@ -242,8 +241,11 @@ class Collector<Regions<N, Sharing>, S> {
     for (std::size_t k = 0; k < leaves; ++k) {
       Leaf& leaf = leaf_[k];
       leaf.slots = 0;
-      for (; next < count && point_[next] < leaf.begin + lanes; ++next)
-        leaf.slots |= std::uint64_t(1) << tracker_.slot_of()[next];
+      for (; next < count && point_[next] < leaf.begin + lanes; ++next) {
+        const std::uint8_t slot = tracker_.slot_of()[next];
+        leaf.slots |= std::uint64_t(1) << slot;
+        leaf.slot[point_[next] - leaf.begin] = slot;
+      }
       met_ |= leaf.slots;
     }
   }
@@ -251,8 +253,8 @@ class Collector<Regions<N, Sharing>, S> {
   static constexpr std::uint32_t lanes = static_cast<std::uint32_t>(lane_count);
   struct Leaf {
     std::uint32_t begin;
-    std::uint64_t slots;  // of its touching points, as bits
-    PointLanes<S> x;
+    std::uint64_t slots;                          // of its touching points, as bits
+    std::array<std::uint8_t, lane_count> slot{};  // of each of them
     PenetrationLanes<S> in;
   };
 

@@ -47,23 +47,24 @@ struct Penetration {
 /// So many points are worked on at once: two to eight vector registers' worth, whose operations do not wait for each other.
 inline constexpr std::size_t lane_count = 16;
 
-/// Points, coordinate by coordinate.
+/// Points, coordinate by coordinate. By the cache line, so that no register's worth lies in two of them.
 template <Real S>
-struct PointLanes {
+struct alignas(64) PointLanes {
   std::array<S, lane_count> x, y, z;  ///< [m]
 };
 
 /// Their penetration.
 template <Real S>
-struct PenetrationLanes {
+struct alignas(64) PenetrationLanes {
   std::array<S, lane_count> depth;                             ///< [m]
   std::array<S, lane_count> gradient_x, gradient_y, gradient_z;  ///< [-]
 };
 
 namespace detail {
-/// One number per lane as whole vector registers, whatever a compiler makes of loops.
-template <Real S>
-using LaneArray = Eigen::Array<S, static_cast<int>(lane_count), 1>;
+/// One number per lane as whole vector registers, whatever a compiler makes of loops. Not aligned: its layout is the same in
+/// files compiled with other vector flags.
+template <Real S, int N = static_cast<int>(lane_count)>
+using LaneArray = Eigen::Array<S, N, 1, Eigen::DontAlign>;
 template <Real S>
 [[nodiscard]] PALPATE_INLINE Eigen::Map<const LaneArray<S>> lane_array(const std::array<S, lane_count>& a) noexcept {
   return Eigen::Map<const LaneArray<S>>(a.data());

@@ -5,6 +5,7 @@
 
 #include <palpate/surface/lattice_mesh.hpp>
 #include <palpate/surface/shape_tools.hpp>
+#include <palpate/surface/superellipsoid_near.hpp>
 #include <palpate/surface/superellipsoid_norm.hpp>
 
 namespace palpate {
@@ -30,6 +31,8 @@ namespace palpate {
 /// at a depth below reach(), because feet shallower than the reach are unique. Deeper, the best of several
 /// descents is taken. Accuracy: p on the surface and distance to a few ulp of
 /// max(a_i, |x|), and the part of x - p across the normal as well down to the reach.
+/// penetration() has a shorter way above the reach, many points at once (superellipsoid_near.hpp); what does not settle there
+/// goes this one.
 /// Ties (planes of symmetry, deep inside): the + side.
 /// A query that is not finite: closest() gives the end of +x at the largest finite distance, penetration() no
 /// contact, separated() false, raycast() no hit. Constructor reports bad axes, exponents or centre.
@@ -80,10 +83,16 @@ class Superellipsoid {
 
   /// Depth below the closest point and the outward normal there; outside {0, 0}.
   [[nodiscard]] Penetration<S> penetration(const Vec3<S>& x) const noexcept {
-    if (!inside(x)) return {S(0), Vec3<S>::Zero()};
-    const Vec3<S> r = x - p_.centre;
-    const Foot foot = solve(r.cwiseAbs());
-    return {-foot.distance, signs_of(r, foot.normal)};
+    Penetration<S> in;
+    near_surface<1>(&x.x(), &x.y(), &x.z(), &in.depth, &in.gradient.x(), &in.gradient.y(), &in.gradient.z());
+    return in;
+  }
+
+  /// The same for `lane_count` points.
+  void penetration(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
+    near_surface<static_cast<int>(lane_count)>(x.x.data(), x.y.data(), x.z.data(), in.depth.data(),
+                                               in.gradient_x.data(), in.gradient_y.data(),
+                                               in.gradient_z.data());
   }
 
   [[nodiscard]] bool inside(const Vec3<S>& x) const noexcept {
@@ -197,6 +206,33 @@ class Superellipsoid {
     if (!is_finite(e) || !(e >= S(0.1) - slack && e <= S(1)))
       fail("Superellipsoid", rule, static_cast<double>(e));
   }
+  // Penetration of N points: at once, and the general way for those that are too deep for that or do not settle.
+  template <int N>
+  void near_surface(const S* x, const S* y, const S* z, S* depth, S* nx, S* ny, S* nz) const noexcept {
+    using Near = detail::SuperellipsoidNear<S, N>;
+    using In = Eigen::Map<const typename Near::Lanes>;
+    const typename Near::Axes r{(In(x) - p_.centre.x()).abs() / min_, (In(y) - p_.centre.y()).abs() / min_,
+                                (In(z) - p_.centre.z()).abs() / min_};
+    const typename Near::Result near = Near::solve(p_.axes / min_, norm_.p, norm_.q, r);
+    for (int i = 0; i < N; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      depth[k] = nx[k] = ny[k] = nz[k] = S(0);
+      if (!near.any_inside || !near.inside[k]) continue;
+      const Vec3<S> at = Vec3<S>(x[k], y[k], z[k]) - p_.centre;
+      Vec3<S> normal;
+      if (near.settled[k] && near.depth[i] * min_ < reach_) {
+        depth[k] = (std::max)(near.depth[i] * min_, S(0));
+        normal = Vec3<S>(near.normal[0][i], near.normal[1][i], near.normal[2][i]);
+      } else {
+        const Foot foot = solve(at.cwiseAbs());
+        depth[k] = -foot.distance;
+        normal = foot.normal;
+      }
+      normal = signs_of(at, normal);
+      nx[k] = normal.x(), ny[k] = normal.y(), nz[k] = normal.z();
+    }
+  }
+
   // v with the signs of r.
   [[nodiscard]] static Vec3<S> signs_of(const Vec3<S>& r, const Vec3<S>& v) noexcept {
     return Vec3<S>(r.x() < S(0) ? -v.x() : v.x(), r.y() < S(0) ? -v.y() : v.y(),

@@ -27,6 +27,26 @@ TEST_CASE_TEMPLATE("power law friction: K F^beta above the chord, against long d
   }
 }
 
+TEST_CASE_TEMPLATE("power law friction: the paper's 3/4 by roots; sliding is never above sticking", S, float,
+                   double) {
+  std::mt19937_64 random(1953);  // fixed seed
+  std::uniform_real_distribution<double> decade(-2, 12), exponent(2.0 / 3, 1.0), coefficient(0.1, 1.0),
+      close(-64, 64);
+  for (int i = 0; i < 3000; ++i) {
+    const S K = static_cast<S>(coefficient(random)), mu = static_cast<S>(coefficient(random));
+    const PowerLawFriction<S> paper({.K = K, .beta = S(0.75), .mu_dynamic = mu});
+    const S normal = static_cast<S>(std::pow(10.0, decade(random)));
+    CHECK_RELATIVE(paper.static_limit(normal),
+                   static_cast<long double>(K) * std::pow(static_cast<long double>(normal), 0.75L),
+                   ulps<S>(4));
+    const S beta = i % 2 == 0 ? S(0.75) : static_cast<S>(exponent(random));
+    const PowerLawFriction<S> law({.K = K, .beta = beta, .mu_dynamic = mu});
+    const S meet = std::pow(K / mu, S(1) / (S(1) - beta));  // to rounding
+    const S near = meet * (S(1) + static_cast<S>(close(random)) * std::numeric_limits<S>::epsilon());
+    if (is_finite(near)) CHECK(law.sliding_limit(near) <= law.static_limit(near));
+  }
+}
+
 TEST_CASE_TEMPLATE("power law friction: beta = 1 is Coulomb to the bit", S, float, double) {
   const PowerLawFriction<S> power({.K = S(0.6), .beta = S(1), .mu_dynamic = S(0.4)});
   const CoulombFriction<S> coulomb({.mu_static = S(0.6), .mu_dynamic = S(0.4)});

@@ -54,6 +54,52 @@ TEST_CASE_TEMPLATE("superellipsoid: between its box and its ellipsoid; flats are
   CHECK_ABSOLUTE(p.gradient.z(), 1.0L, test::ulps<S>(8));
 }
 
+TEST_CASE_TEMPLATE("superellipsoid: penetration of many points is that of each, and leads to the foot", S,
+                   float, double) {
+  MESSAGE("seed ", seed);
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1), exponent(0.1, 1);
+  for (int k = 0; k < 60; ++k) {
+    const Vec3<S> a(S(0.06), S(0.04), k % 2 == 0 ? S(0.04) : S(0.01)), m(S(0.01), S(-0.02), S(0.03));
+    const S e1 = k % 5 == 0 ? S(1) : S(exponent(random)), e2 = k % 7 == 0 ? S(0.1) : S(exponent(random));
+    const Superellipsoid<S> body({.axes = a, .e1 = e1, .e2 = e2, .centre = m});
+    PointLanes<S> x;
+    for (std::size_t i = 0; i < lane_count; ++i) {
+      Vec3<S> r = a.cwiseProduct(Vec3<S>(S(uniform(random)), S(uniform(random)), S(uniform(random))));
+      if (i % 4 == 1) r[static_cast<int>(i) % 3] = S(0);     // plane of symmetry
+      if (i == 2) r = Vec3<S>(S(0), S(0), S(0.99) * a.z());  // next to the end of z, where powers underflow
+      if (i % 4 == 3) r = S(0.98) * (body.closest(S(3) * r + m).position - m);  // near the surface
+      if (i == 7) r.setZero();
+      x.x[i] = r.x() + m.x(), x.y[i] = r.y() + m.y(), x.z[i] = r.z() + m.z();
+    }
+    x.y[5] = std::numeric_limits<S>::quiet_NaN();
+    x.z[9] = std::numeric_limits<S>::infinity();
+    x.x[10] = (std::numeric_limits<S>::max)();
+    PenetrationLanes<S> in;
+    body.penetration(x, in);
+    for (std::size_t i = 0; i < lane_count; ++i) {
+      const Vec3<S> at(x.x[i], x.y[i], x.z[i]), n(in.gradient_x[i], in.gradient_y[i], in.gradient_z[i]);
+      const Penetration<S> one = body.penetration(at);
+      const long double rounding = test::ulps<S>(8) * 0.06L;
+      CHECK_ABSOLUTE(in.depth[i], one.depth, rounding);
+      if (!body.inside(at)) {
+        CHECK_ABSOLUTE(in.depth[i], 0, rounding);
+        continue;
+      }
+      const SurfacePoint<S> foot = body.closest(at);
+      CHECK_ABSOLUTE(in.depth[i], -foot.distance, rounding);
+      if (in.depth[i] > S(0.8) * body.reach()) continue;  // the foot is ill-conditioned beyond
+      CHECK_ABSOLUTE(n.norm(), 1, test::ulps<S>(8));
+      // By powers of another kind: the foot is on the surface, and its normal is this one. A foot is known to a few ulp of
+      // a_max, its normal to that times the curvature, at most 1 / reach.
+      const Vec3<S> p = at + in.depth[i] * n;
+      CHECK_ABSOLUTE(body.closest(p).distance, 0, 2 * rounding);
+      CHECK_ABSOLUTE((body.normal(p) - n).norm(), 0,
+                     test::ulps<S>(64) + 4 * rounding / static_cast<long double>(body.reach()));
+    }
+  }
+}
+
 TEST_CASE("superellipsoid: bad exponents and ratios are refused by name and value") {
   const auto refusal = [](const Superellipsoid<double>::Params& params) -> std::string {
     try {
