@@ -41,6 +41,6 @@ split() {
 }
 if [ -f work_precision_force.csv ]; then split work_precision_force 5 6; fi
 if [ -f work_precision_shape.csv ]; then split work_precision_shape 6 7; fi
-for plot in force_budget mesh work_precision_force work_precision_shape shape_error growth skip; do
-  if [ -f "$plot.csv" ]; then gnuplot -e "data='$data'; here='$here/plots'" "$here/plots/$plot.gp"; fi
+for plot in force_budget mesh work_precision_force work_precision_shape shape_error bodies growth skip; do
+  if [ -f "$plot.csv" ] || [ -f "$plot.tsv" ]; then gnuplot -e "data='$data'; here='$here/plots'" "$here/plots/$plot.gp"; fi
 done

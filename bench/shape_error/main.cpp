@@ -2,9 +2,10 @@
 
 /// @file  Where on the surface a deformed shape is wrong: the library's closed-form and solved fields against nonlinear finite
 /// elements (truth/data), a stuck patch pressed 4 mm deep. shape_error.csv: relative L2 error; shape_error.tsv beside it, for the
-/// plot: per vertex its place, the reference's displacement and the model's [mm].
+/// plot: per vertex its place, the reference's displacement and the model's [mm]. bodies.tsv: bodies that have no reference.
 
 #include "scenes.hpp"
+#include "shape_error/bodies.hpp"
 #include "work_precision_shape/body.hpp"
 
 #include <palpate/deformation/half_space.hpp>
@@ -49,13 +50,14 @@ std::vector<V> response(const Truth& t) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 4) {
-    std::fprintf(stderr, "usage: %s OUTPUT.csv FOLDER_OF_TRUTH OUTPUT.tsv\n", argv[0]);
+  if (argc < 5) {
+    std::fprintf(stderr, "usage: %s OUTPUT.csv FOLDER_OF_TRUTH OUTPUT.tsv BODIES.tsv\n", argv[0]);
     return 2;
   }
   const Output out(2, argv, "case,model,depth_mm,error_l2");
   std::FILE* fields = std::fopen(argv[3], "w");
-  if (fields == nullptr) return 2;
+  std::FILE* bodies = std::fopen(argv[4], "w");
+  if (fields == nullptr || bodies == nullptr) return 2;
   for (const char* name : {"ellipsoid", "cube"}) {
     const Truth t = read_truth(argv[2], name);
     const std::array<std::vector<V>, 2> models{half_space(t), response(t)};
@@ -73,5 +75,6 @@ int main(int argc, char** argv) {
     }
     std::fputs("\n\n", fields);
   }
-  return std::fclose(fields) == 0 ? 0 : 2;
+  draw_bodies(bodies);
+  return std::fclose(fields) == 0 && std::fclose(bodies) == 0 ? 0 : 2;
 }

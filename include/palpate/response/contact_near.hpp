@@ -4,11 +4,12 @@
 /// @file  The near field of one solved contact, four places at a time. Per tick.
 ///
 /// Places near the contact lie on a bent surface, the disc in a plane. The disc is taken at the depth z of its own edge
-/// below the tangent plane: for a quadric z (a/r)^2, so depth = z (1 - (a/r)^2), which vanishes at the edge.
+/// below the tangent plane: for a quadric z (a/r)^2, so depth = z (1 - (a/r)^2), which vanishes at the edge. The edge is at
+/// most `sag` deep: the side of a block is below its top by all of z.
 ///
-/// Second order in depth d_n, outside the patch only, s = r/a:
+/// Second order in depth d_n, s = max(r/a, 1): u = q_r p/(a s) + q_n m,
 ///     q_r = k_r (d_n delta_n/a) asin(1/s) / (s sqrt(s^2 - 1 + e^2)),   q_n = k_n (d_n delta_n/a) s^-5 sqrt(1 - s^-2)
-/// e is such that the sum of all terms of second order vanishes at the patch's edge.
+/// e is such that all terms of second order add up to nothing at the patch's edge; they do so within, too.
 
 #include <palpate/response/near_field.hpp>
 
@@ -24,21 +25,25 @@ struct ContactNear {
   Vec3<float> along;           ///< tangential part of the force / (4 pi mu)
   Vec3<float> tilt;            ///< moment of tilt / (4 pi mu)
   Vec3<float> turn;            ///< slope at the patch's edge that is taken back outside, times s^-7
+  Mat3<float> shear;           ///< in the patch's plane / (4 pi mu)
   Vec3<float> push;            ///< taken back outside the patch, times s^-8
   float normal = 0;            ///< normal part of the force / (4 pi mu)
   float dipole = 0;            ///< radial double force / (4 pi mu)
   float radial = 0, sink = 0;  ///< k_r d_n^2 / a, k_n d_n^2 / a
   float rim2 = 1;              ///< e^2
   float a = 1, nu = 0.5f;
-  bool second = false;  ///< any load beside the force
-  bool tilted = false;  ///< tilt is not zero
-  bool ball = false;    ///< Hertz's weight
+  float sag = 0;         ///< how deep the patch's edge lies below its plane, at most
+  bool second = false;   ///< any load beside the force
+  bool tilted = false;   ///< tilt is not zero
+  bool sheared = false;  ///< shear is not zero
+  bool ball = false;     ///< Hertz's weight
 
   /// All loads times `share`.
   void scale(float share) noexcept {
     along *= share;
     tilt *= share;
     turn *= share;
+    shear *= share;
     push *= share;
     for (float* part : {&normal, &dipole, &radial, &sink}) *part *= share;
   }
@@ -48,7 +53,7 @@ struct ContactNear {
     const Lane px = rx - z * m.x(), py = ry - z * m.y(), pz = rz - z * m.z();
     const Lane r2 = (rx * rx + ry * ry + rz * rz).max(1e-12f * a * a), p2 = px * px + py * py + pz * pz;
     const Lane near2 = (a * a / r2).min(1.f);
-    const Lane depth = (z * (1.f - near2)).max(0.f);
+    const Lane depth = (z - (z * near2).min(sag)).max(0.f);
     const Disc<Lane, float> disc(p2, depth, a);
     if (ball) {
       const auto u = disc.hertz(normal, nu);
@@ -61,13 +66,12 @@ struct ContactNear {
     if (second) {
       const auto d = disc.double_force(nu);
       const Lane inverse = near2.sqrt(), beyond = (1.f - near2).max(0.f);  // 1 / s, at most 1; 1 - 1 / s^2
-      const Lane outside = (beyond * 1e30f).min(1.f), near4 = outside * near2 * near2;
-      // q_r / p: asin(1/s) / (s sqrt(s^2 - 1 + e^2)), with the roots of 1/s^2 instead.
-      const Lane q_r = outside * radial * arc_sine(inverse) * near2 /
-                       ((beyond + rim2 * near2) * p2).max(1e-12f * a * a).sqrt();
+      // q_r / (a s): asin(1/s) / (s sqrt(s^2 - 1 + e^2)), with the roots of 1/s^2 instead.
+      const Lane q_r =
+          (radial / a) * arc_sine(inverse) * near2 * inverse / (beyond + rim2 * near2).max(1e-12f).sqrt();
       in_plane += dipole * d.in_plane + q_r;
-      down += dipole * d.normal + sink * near4 * inverse * beyond.sqrt();
-      back = near4 * near2 * near2;
+      back = near2 * near2 * near2 * near2;
+      down += dipole * d.normal + sink * near2 * near2 * inverse * beyond.sqrt();
       out.x -= back * push.x();
       out.y -= back * push.y();
       out.z -= back * push.z();
@@ -81,6 +85,17 @@ struct ContactNear {
       out.x += t.along * tilt.x();
       out.y += t.along * tilt.y();
       out.z += t.along * tilt.z();
+    }
+    if (sheared) {
+      const Lane sx = shear(0, 0) * px + shear(0, 1) * py + shear(0, 2) * pz,
+                 sy = shear(1, 0) * px + shear(1, 1) * py + shear(1, 2) * pz,
+                 sz = shear(2, 0) * px + shear(2, 1) * py + shear(2, 2) * pz;
+      const auto s = disc.shear(Lane(px * sx + py * sy + pz * sz), nu);
+      in_plane += s.in_plane;
+      down += s.normal;
+      out.x += s.along * sx;
+      out.y += s.along * sy;
+      out.z += s.along * sz;
     }
     out.x += in_plane * px + down * m.x();
     out.y += in_plane * py + down * m.y();

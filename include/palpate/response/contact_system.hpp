@@ -11,50 +11,19 @@
 /// | w      | the body's correction, times mu                                          | 1/m    |
 /// | q, w_2 | second order in depth (SecondOrder): universal forces, the body's answer | m^2, m |
 ///
-/// The displacement of patch i by the force on patch j, averaged over i, is that of a disc with the square sum of the radii:
-/// exact to second moments, and never singular when patches meet. Where the solve mesh does not resolve the body, a mode of
+/// What contacts do to each other: contact_coupling.hpp; how a wide patch is held: patch_moments.hpp. Where the solve mesh does not resolve the body, a mode of
 /// the system may give way too little or even pull: it is held at a tenth of the half-space's smaller compliance (coupled
 /// contacts: a twentieth), continuously (held_compliance.hpp).
 
 #include <palpate/beam/cholesky.hpp>
-#include <palpate/core/fixed_vector.hpp>
+#include <palpate/response/contact_coupling.hpp>
 #include <palpate/response/contact_near.hpp>
 #include <palpate/response/contact_types.hpp>
 #include <palpate/response/held_compliance.hpp>
-#include <palpate/response/response_field.hpp>
 
 #include <algorithm>
-#include <limits>
 
 namespace palpate::detail {
-
-/// Solved nodes that share a contact's force.
-struct PatchWeight {
-  std::uint32_t node;
-  double weight;
-};
-constexpr std::size_t place_nodes = 3 * TouchMesh::most_parts;
-
-/// One contact placed and solved.
-struct PlacedContact {
-  Vec3<double> x, m, d;  ///< m: unit normal into the body
-  double a = 0;
-  double least = 0;  ///< smaller compliance of the half-space, times mu
-  double ball = 0;   ///< radius of the sphere; 0: stuck patch
-  TouchPlace place;
-  FixedVector<PatchWeight, place_nodes> nodes;  ///< solved ones at the place
-  double carried = 1;                           ///< of the force, not by what is held
-  double share = 1;                             ///< of w that counts
-  PatchTable::Level level;                      ///< of the radius
-  Mat3<double> w, C, S;                         ///< correction, sum, times mu; the sum's inverse
-  Vec3<double> rhs;
-  Vec3<double> P = Vec3<double>::Zero();      ///< force / mu
-  Vec3<double> extra = Vec3<double>::Zero();  ///< force / mu that the tool feels and the field does not
-  double dipole = 0, dn2 = 0;                 ///< / mu
-  Vec3<double> tilt = Vec3<double>::Zero();   ///< / mu
-  Vec3<double> turn = Vec3<double>::Zero();   ///< its part of second order
-  Vec3<double> push = Vec3<double>::Zero();
-};
 
 template <std::size_t Capacity>
 class ContactSystem {
@@ -73,6 +42,10 @@ class ContactSystem {
 
   /// P of the first `count` contacts, all located: first by the forces alone; they give the further loads.
   void solve(std::size_t count) noexcept {
+    if (count > 1)
+      for (std::size_t i = 0; i < count; ++i) contact_[i].moments.share = 0;
+    else if (count == 1 && contact_[0].moments.share > 0)
+      widen(contact_[0]);
     solve_once(count);
     bool any = false;
     for (std::size_t i = 0; i < count; ++i) {
@@ -80,6 +53,7 @@ class ContactSystem {
       any = any || contact_[i].dipole != 0;
     }
     if (any) solve_once(count);
+    if (count == 1 && contact_[0].moments.share > 0) contact_[0].hold_moments();
   }
 
   void locate(Contact& c) const noexcept {
@@ -87,12 +61,14 @@ class ContactSystem {
     c.tilt.setZero();
     c.turn.setZero();
     c.push.setZero();
+    c.held.setZero();
     c.extra.setZero();
     c.place = field_->touch().locate(c.x);
     c.nodes.clear();
     add_place(c.nodes, c.place, 1);
-    const double size = mean_size(c);
+    const double size = mean_size(*field_, c);
     c.level = field_->table().level(averaged(c, size));
+    c.sag = field_->table().sag(c.place.node, c.place.weight, c.a);
     // Far from the surface the nearest place may jump; there w has faded away.
     const double far2 = c.place.distance2 / (size * size);
     c.share = 1 / (1 + far2 * far2);
@@ -104,32 +80,19 @@ class ContactSystem {
     c.C = c.w + (near.normal - near.along) * (c.m * c.m.transpose());
     c.C.diagonal().array() += near.along;
     c.least = (std::min)(near.normal, near.along);
-    if (!is_above(c.C, one_mode * c.least)) {
-      c.w -= c.C;
-      hold_above(c.C, one_mode * c.least);
-      c.w += c.C;
-    }
-    c.S = c.C.inverse();
+    const Mat3<double> C = c.C;
+    invert(c);
+    c.w += c.C - C;
+    c.moments.share = c.ball > 0 ? 0 : PatchMoments::share_of(c.a, size);
     c.rhs = c.d;
   }
 
-  // More than half of d, or of the force: the series in depth has ended there. Less: (1 + r^8)^(-1/8) is 1.
+  // More than half of d, or of the force: the series in depth has ended there.
   [[nodiscard]] static double kept(const Vec3<double>& second, const Contact& c) noexcept {
-    return fading(second.squaredNorm(), c.d.squaredNorm());
+    return fading(second.squaredNorm(), 0.25 * c.d.squaredNorm());
   }
   [[nodiscard]] static double kept_of_force(const Vec3<double>& second, const Contact& c) noexcept {
-    return fading((c.S * second).squaredNorm(), c.P.squaredNorm());
-  }
-  [[nodiscard]] static double fading(double second2, double first2) noexcept {
-    const double r2 = second2 / (0.25 * first2 + (std::numeric_limits<double>::min)()), r8 = r2 * r2 * r2 * r2;
-    return 1 / std::sqrt(std::sqrt(std::sqrt(1 + r8)));
-  }
-  // Size of the nodes around the contact's place, interpolated.
-  [[nodiscard]] double mean_size(const Contact& c) const noexcept {
-    double size = 0;
-    for (std::size_t i = 0; i < 3; ++i)
-      size += c.place.weight[Eigen::Index(i)] * field_->touch().nodes()[c.place.node[i]].size;
-    return size;
+    return fading((c.S * second).squaredNorm(), 0.25 * c.P.squaredNorm());
   }
   // s^2 of patch_table.hpp.
   [[nodiscard]] static double averaged(const Contact& c, double size) noexcept {
@@ -161,30 +124,25 @@ class ContactSystem {
   [[nodiscard]] double find_patch(const Contact& c, float* weight,
                                   std::vector<std::uint32_t>& nodes) const noexcept {
     nodes.clear();
-    // Interpolated twice, over the place's triangle and over those that the spreads lie on: a quarter of size^2 each time.
-    const double size = mean_size(c);
-    const PatchTable::Level level = field_->table().level(c.a * c.a - 0.5 * size * size);
     double sum = 0;
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t l = 0; l < 2; ++l) {
-        const double part =
-            c.share * c.place.weight[Eigen::Index(i)] * (l == 0 ? 1 - level.part : level.part);
-        for (const TouchMesh::Share& s : field_->table().spread(c.place.node[i], level.below + l)) {
-          const double w = part * double(s.weight);
-          if (!(w > 1e-12)) continue;  // so that a node in the list has a weight
-          if (weight[s.node] == 0) nodes.push_back(s.node);
-          weight[s.node] += static_cast<float>(w);
-          sum += w;
-        }
+    each_spread(*field_, c, [&](double part, std::uint32_t k, std::size_t level) {
+      for (const TouchMesh::Share& s : field_->table().spread(k, level)) {
+        const double w = part * double(s.weight);
+        if (!(w > 1e-12)) continue;  // so that a node in the list has a weight
+        if (weight[s.node] == 0) nodes.push_back(s.node);
+        weight[s.node] += static_cast<float>(w);
+        sum += w;
       }
+    });
     return 1 - (std::max)(c.share - sum, 0.0);
   }
 
-  // Double force and tilts as node k has them.
-  [[nodiscard]] Vec3<double> second_loads(const Contact& c, std::uint32_t k) const noexcept {
-    const Vec3<double>& n = field_->touch().nodes()[k].normal;
-    const Vec3<double> t1 = perpendicular(n);
-    return {c.dipole, c.tilt.dot(t1), c.tilt.dot(n.cross(t1))};
+  // Their parts q of the moments, three numbers each; where there is no weight, none.
+  void find_moments(const Contact& c, const float* weight, float* q) const noexcept {
+    each_moment(*field_, c, [weight, q](std::uint32_t node, const Vec3<double>& part) {
+      if (weight[node] == 0) return;
+      for (std::size_t i = 0; i < 3; ++i) q[3 * node + i] += static_cast<float>(part[Eigen::Index(i)]);
+    });
   }
 
   /// The near field as lanes take it.
@@ -201,22 +159,42 @@ class ContactSystem {
     near.m = c.m.template cast<float>();
     near.along = (scale * (c.P - pushed * c.m)).template cast<float>();
     near.normal = static_cast<float>(scale * pushed);
-    near.tilt = (scale * c.tilt).template cast<float>();
+    Vec3<double> tilt = c.tilt;
+    double dipole = c.dipole;
+    near.shear.setZero();
+    near.sheared = c.moments.share > 0;
+    if (near.sheared) {
+      tilt += c.moments.tilt(c.held);
+      dipole += c.held[0];
+      near.shear = (scale * c.moments.shear(c.held)).template cast<float>();
+    }
+    near.tilt = (scale * tilt).template cast<float>();
     near.turn = (0.375 * (1 - nu) / (c.a * c.a * c.a) * c.turn).template cast<float>();
     near.push = c.push.template cast<float>();
-    near.dipole = static_cast<float>(scale * c.dipole);
+    near.dipole = static_cast<float>(scale * dipole);
     near.radial = static_cast<float>(settings_.constants.radial * c.dn2 / c.a);
     near.sink = static_cast<float>(settings_.constants.sink * c.dn2 / c.a);
     near.rim2 = static_cast<float>(rim * rim);
     near.a = static_cast<float>(c.a);
+    near.sag = static_cast<float>(c.sag);
     near.nu = static_cast<float>(nu);
-    near.second = c.dipole != 0;
-    near.tilted = c.tilt.squaredNorm() > 0;
+    near.second = dipole != 0;
+    near.tilted = tilt.squaredNorm() > 0;
     near.ball = c.ball > 0;
     return near;
   }
 
  private:
+  // S, with C held.
+  static void invert(Contact& c) noexcept {
+    if (!is_above(c.C, one_mode * c.least)) hold_above(c.C, one_mode * c.least);
+    c.S = c.C.inverse();
+  }
+  void widen(Contact& c) const noexcept {
+    c.moments.read(*field_, c.place, c.level, c.m, c.a, c.share * c.share, stuck_load(c));
+    c.C -= c.moments.taken(c.C.trace());
+    invert(c);
+  }
   void solve_coupled(std::size_t count) noexcept {
     using System = SpdSystem<3 * Capacity>;
     System system{};
@@ -225,9 +203,13 @@ class ContactSystem {
       put(system, i, i, contact_[i].C);
       for (std::size_t j = 0; j < i; ++j)
         put(system, i, j,
-            0.5 * (coupling(contact_[i], contact_[j]) + coupling(contact_[j], contact_[i]).transpose()));
-      for (std::size_t j = 0; j < count; ++j)
-        if (i != j) contact_[i].rhs -= second_order(contact_[i], contact_[j]);
+            0.5 * (coupling(*field_, contact_[i], contact_[j]) +
+                   coupling(*field_, contact_[j], contact_[i]).transpose()));
+      for (std::size_t j = 0; j < count; ++j) {
+        if (i == j || contact_[j].dipole == 0) continue;
+        const Vec3<double> second = second_order(*field_, contact_[i], contact_[j]);
+        contact_[i].rhs -= kept(second, contact_[j]) * second;
+      }
     }
     for (std::size_t i = 0; i < n; ++i) system.b[i] = contact_[i / 3].rhs[Eigen::Index(i % 3)];
     System test = system;
@@ -260,57 +242,21 @@ class ContactSystem {
       for (std::size_t c = 0; c < 3; ++c)
         system.at(3 * i + r, 3 * j + c) = block(Eigen::Index(r), Eigen::Index(c));
   }
-  // Mean displacement of patch i by unit forces on patch j.
-  [[nodiscard]] Mat3<double> coupling(const Contact& ci, const Contact& cj) const noexcept {
-    constexpr double scale = 1 / (4 * std::numbers::pi);
-    const double nu = field_->nu(), a = std::hypot(ci.a, cj.a);
-    const Vec3<double> r = ci.x - cj.x, p = tangential(r, cj.m);
-    const Disc<double> disc(p.squaredNorm(), edge_depth(r, cj.m, a), a);
-    Mat3<double> out;
-    for (int l = 0; l < 3; ++l) {
-      const double fn = cj.m[l];
-      const Vec3<double> t = Vec3<double>::Unit(l) - fn * cj.m;
-      const auto u = disc.flat(fn, t.dot(p), nu);
-      out.col(l) = ci.carried * cj.carried * scale * (u.in_plane * p + u.normal * cj.m + u.along * t);
-    }
-    for (const PatchWeight& i : ci.nodes)
-      for (const PatchWeight& j : cj.nodes) {
-        const double g = ci.share * cj.share * i.weight * j.weight;
-        for (std::size_t l = 0; l < 3; ++l) out.col(Eigen::Index(l)) += g * field_->at(i.node, j.node, l);
-      }
-    return out;
-  }
-  // Displacement of patch i by contact j's loads of second order.
-  [[nodiscard]] Vec3<double> second_order(const Contact& ci, const Contact& cj) const noexcept {
-    Vec3<double> out = Vec3<double>::Zero();
-    if (cj.dipole == 0) return out;
-    const double nu = field_->nu(), a = std::hypot(ci.a, cj.a);
-    const Vec3<double> r = ci.x - cj.x, p = tangential(r, cj.m);
-    const Disc<double> disc(p.squaredNorm(), edge_depth(r, cj.m, a), a);
-    const auto d = disc.double_force(nu), t = disc.tilt(cj.tilt.dot(p), nu);
-    out = ((cj.dipole * d.in_plane + t.in_plane) * p + (cj.dipole * d.normal + t.normal) * cj.m +
-           t.along * cj.tilt) /
-          (4 * std::numbers::pi);
-    out *= ci.carried * cj.carried;
-    for (const PatchWeight& j : cj.nodes) {
-      const Vec3<double> load = ci.share * cj.share * j.weight * second_loads(cj, j.node);
-      for (const PatchWeight& i : ci.nodes)
-        for (std::size_t l = 0; l < 3; ++l)
-          out += i.weight * load[Eigen::Index(l)] * field_->at(i.node, j.node, 3 + l);
-    }
-    return kept(out, cj) * out;
-  }
   // A double force along the normal, where there is no traction, works on the strain there: -nu / (1 - nu) of the
   // surface's. It acts like a radial one of that share.
   [[nodiscard]] double outward() const noexcept { return field_->nu() / (1 - field_->nu()); }
 
+  // Radial double force of a unit normal force on a disc that is stuck.
+  [[nodiscard]] double stuck_load(const Contact& c) const noexcept {
+    return c.a * (1 - 2 * field_->nu()) / (std::numbers::pi * (1 - field_->nu()));
+  }
   // Loads of a solved contact beside its force. Linear: for nu < 1/2 a disc under a force spreads and turns by itself; stuck, it
   // is kept from it, in the mean that the loads' energy knows.
   // Second order: the load has moved with the tool; far away that is the moment of the force F by the way d. Near by, a
   // factor of d_n is the local indentation delta_n = C_near P, which is less where the body as a whole gives way.
   void press(Contact& c) const noexcept {
     const SecondOrder& k = settings_.constants;
-    const double nu = field_->nu(), stuck = c.a * (1 - 2 * nu) / (std::numbers::pi * (1 - nu));
+    const double nu = field_->nu(), stuck = stuck_load(c);
     const DiscCompliance near = disc_compliance(c.a, nu);
     const double depth = c.d.dot(c.m), held = std::clamp(depth, -2 * c.a, 2 * c.a);
     const Vec3<double> dt = c.d - depth * c.m;
@@ -335,7 +281,12 @@ class ContactSystem {
     }
     c.dipole = stuck * pushed;
     c.tilt = -0.5 * stuck * dragged;
-    const Vec3<double> spread = c.dipole * radial + tilting.transpose() * c.tilt;
+    const auto moved = [&](double pull, const Vec3<double>& turn) {
+      Vec3<double> u = pull * radial + tilting.transpose() * turn;
+      if (c.moments.share > 0) u -= c.moments.G.transpose() * c.moments.give * c.moments.of_loads(pull, turn);
+      return u;
+    };
+    const Vec3<double> spread = moved(c.dipole, c.tilt);
     const double resolved = kept(spread, c);
     c.dipole *= resolved;
     c.tilt *= resolved;
@@ -345,7 +296,7 @@ class ContactSystem {
     c.dn2 = indented * held;
     c.turn = k.slide * pushed * dt - held * dragged;
     c.push = near.along * k.drag * indented * dt - near.normal * k.softening * c.dn2 * c.m;
-    const Vec3<double> second = c.push - dipole * radial - tilting.transpose() * c.turn;
+    const Vec3<double> second = c.push - moved(dipole, c.turn);
     const double share = kept(second, c) * kept_of_force(second, c);
     c.dn2 *= share;
     c.turn *= share;

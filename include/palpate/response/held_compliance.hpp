@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Keeps a compliance away from zero, so that no force is larger than d / (least compliance). Per tick.
+/// @file  Bounds that are kept smoothly: of a compliance from below, so that no force is larger than d / (least compliance); of
+/// what a mesh may not resolve from above. Per tick.
 
 #include <palpate/core/vector.hpp>
 
 #include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <limits>
 
 namespace palpate::detail {
 
@@ -28,6 +32,12 @@ void hold_above(M& C, double least) noexcept {
   const double det =
       c * minor - a * C(2, 1) * C(2, 1) - b * C(2, 0) * C(2, 0) + 2 * C(1, 0) * C(2, 0) * C(2, 1);
   return a > 0 && minor > 0 && det > 0;
+}
+
+/// (1 + r^8)^(-1/8), r^2 = size2 / most2 >= 0: what keeps a vector of squared length size2 below most2; 1 where it is.
+[[nodiscard]] inline double fading(double size2, double most2) noexcept {
+  const double r2 = size2 / (most2 + (std::numeric_limits<double>::min)()), r8 = r2 * r2 * r2 * r2;
+  return 1 / std::sqrt(std::sqrt(std::sqrt(1 + r8)));
 }
 
 }  // namespace palpate::detail

@@ -23,6 +23,7 @@
 #include <array>
 #include <cmath>
 #include <concepts>
+#include <limits>
 #include <numbers>
 
 namespace palpate {
@@ -185,6 +186,22 @@ class Disc {
     return {z_ * tp * phi_2, tp * (z_ * phi_zp - (F(1) + b) * phi_p), z_ * phi_p};
   }
 
+  /// Forces s p in the disc's plane, s symmetric without trace, of the moment sum f x^T = s / 2; weight minus half the
+  /// gradient of Hertz's. psp = p.s.p; `along` goes with s p.
+  [[nodiscard]] PALPATE_INLINE Field shear(const S& psp, F nu) const noexcept {
+    const F b = F(1) - F(2) * nu, s = F(3) / (a_ * a_ * a_);
+    const C w3 = ww_ * w_, w4 = ww_ * ww_, w3R = w3 * iR_;
+    // (1/p d/dp)^2 and ^3 of L, X and phi with Hertz's weight.
+    const S L_2 = s * (F(0.25) * (w_.im + p2_ * w3.im / F(3)) + F(0.5) * a_ * ww_.re),
+            L_3 = -s * (w3.im / F(3) + a_ * w3R.re),
+            X_2 = s * (F(0.125) * (angle_ - F(2) / F(3) * p2_ * ww_.im - p2_ * p2_ * w4.im / F(12)) -
+                       F(0.25) * a_ * (w_.re + p2_ * w3.re / F(3))),
+            X_3 = s * (ww_.im / F(12) + p2_ * w4.im / F(24) + a_ * w3.re / F(3)),
+            phi_2 = s * (F(-0.5) * ww_.im - a_ * wwR_.re);
+    return {psp * (F(0.5) * z_ * L_3 - nu * X_3), F(0.5) * psp * (z_ * phi_2 - b * L_2),
+            z_ * L_2 - hertz_phi_p() - F(2) * nu * X_2};
+  }
+
   /// Forces around the disc's axis with the moment 1 about m: u = twist (m x p), for every nu. A rigid disc's weight.
   [[nodiscard]] PALPATE_INLINE S twist() const noexcept { return -hertz_phi_p(); }
 
@@ -238,9 +255,11 @@ struct DiscCompliance {
 }
 
 /// Depth z >= 0 below a disc of radius a under a surface that bends away from its plane: at r, outside, below the plane of
-/// the disc's own edge (see contact_near.hpp); within the radius 0.
-[[nodiscard]] inline double edge_depth(const Vec3<double>& r, const Vec3<double>& m, double a) noexcept {
-  return (std::max)(r.dot(m) * (1 - (std::min)(1.0, a * a / (std::max)(r.squaredNorm(), 1e-300))), 0.0);
+/// the disc's own edge (see contact_near.hpp), which is at most `sag` deep.
+[[nodiscard]] inline double edge_depth(const Vec3<double>& r, const Vec3<double>& m, double a,
+                                       double sag = (std::numeric_limits<double>::max)()) noexcept {
+  const double z = r.dot(m), near2 = (std::min)(1.0, a * a / (std::max)(r.squaredNorm(), 1e-300));
+  return (std::max)(z - (std::min)(z * near2, sag), 0.0);
 }
 
 /// 4 pi mu u at r of the force f spread over a stuck flat disc; m: unit normal into the body.

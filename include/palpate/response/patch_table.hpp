@@ -3,6 +3,7 @@
 
 /// @file  How far the body's correction w lets a contact give way: means over patches of any size, tabulated.
 
+#include <palpate/response/moment_loads.hpp>
 #include <palpate/response/near_field.hpp>
 #include <palpate/response/parallel.hpp>
 #include <palpate/response/touch_mesh.hpp>
@@ -32,15 +33,18 @@ class PatchTable {
     float mean
         [9];  ///< of the unit radial double force and the unit tilts along the node's two tangents [1/m^2]
   };
+  using Moments = MomentRow;
   using Share = TouchMesh::Share;
 
   PatchTable() = default;
-  PatchTable(const TouchMesh& touch, std::vector<Own> own, std::vector<Second> second, std::size_t levels,
-             std::vector<std::uint32_t> spread_begin, std::vector<Share> spread)
+  PatchTable(const TouchMesh& touch, std::vector<Own> own, std::vector<Second> second,
+             std::vector<Moments> moments, std::size_t levels, std::vector<std::uint32_t> spread_begin,
+             std::vector<Share> spread)
       : unit_(unit(touch)),
         levels_(levels),
         own_(std::move(own)),
         second_(std::move(second)),
+        moments_(std::move(moments)),
         spread_begin_(std::move(spread_begin)),
         spread_(std::move(spread)) {}
 
@@ -67,6 +71,15 @@ class PatchTable {
           add(seen[i], at[w.node].vertex[std::size_t(c)], w.weight * at[w.node].weight[c]);
     });
     for (const auto& list : loaded) keep_solved(touch, list);
+    moments_.resize(n * levels_);
+    detail::parallel_for(n * levels_, threads, [&](std::size_t i) {
+      const std::size_t k = i / levels_;
+      const auto see = [&](std::uint32_t node, const auto& each) {
+        for (std::size_t c = 0; c < 3; ++c) each(at[node].vertex[c], at[node].weight[Eigen::Index(c)]);
+      };
+      moments_[i] = detail::find_moments(touch, k, spread(k, i % levels_), stride, column, see);
+      moments_[i].sag = static_cast<float>(detail::find_sag(touch, k, std::sqrt(radius2(i % levels_))));
+    });
     std::vector<std::vector<std::uint32_t>> around(n);  // triangles
     for (std::uint32_t t = 0; t < touch.triangles().size(); ++t)
       for (auto k : touch.triangles()[t]) around[k].push_back(t);
@@ -168,12 +181,27 @@ class PatchTable {
     const std::size_t i = k * levels_ + level;
     return {spread_.data() + spread_begin_[i], spread_begin_[i + 1] - spread_begin_[i]};
   }
+  /// How deep the edge of a patch of radius a lies below its plane, at most.
+  [[nodiscard]] double sag(const std::array<std::uint32_t, 3>& node, const Vec3<double>& l,
+                           double a) const noexcept {
+    const Level at = level(a * a);
+    double out = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      out += l[Eigen::Index(i)] * ((1 - at.part) * double(moments(node[i], at.below).sag) +
+                                   at.part * double(moments(node[i], at.below + 1).sag));
+    return out;
+  }
+  [[nodiscard]] const Moments& moments(std::size_t k, std::size_t level) const noexcept {
+    return moments_[k * levels_ + level];
+  }
+  [[nodiscard]] const std::vector<Moments>& moment_rows() const noexcept { return moments_; }
   [[nodiscard]] const std::vector<std::uint32_t>& spread_begin() const noexcept { return spread_begin_; }
   [[nodiscard]] const std::vector<Share>& all_spread() const noexcept { return spread_; }
   [[nodiscard]] const std::vector<Own>& own_rows() const noexcept { return own_; }
   [[nodiscard]] const std::vector<Second>& second_rows() const noexcept { return second_; }
   [[nodiscard]] std::size_t memory() const noexcept {
-    return own_.size() * sizeof(Own) + second_.size() * sizeof(Second) + spread_.size() * sizeof(Share);
+    return own_.size() * sizeof(Own) + second_.size() * sizeof(Second) + moments_.size() * sizeof(Moments) +
+           spread_.size() * sizeof(Share);
   }
 
  private:
@@ -273,6 +301,7 @@ class PatchTable {
   std::size_t levels_ = 2;
   std::vector<Own> own_;        // per triangle and level
   std::vector<Second> second_;  // per node and level
+  std::vector<Moments> moments_;
   std::vector<std::uint32_t> spread_begin_{0};
   std::vector<Share> spread_;
 };

@@ -3,30 +3,21 @@
 
 /// @file  Makes a triangle mesh of a wanted number of vertices from a finer or coarser one: split long edges,
 /// collapse short ones, flip to Delaunay, relax, project. Sharp edges and the fixed region's rim stay. Set-up only.
-///
-/// Edge length at x: L = min(h, r h + g dist(x, rim)), with h from the wanted number of vertices,
-/// N = integral of 2 / (sqrt(3) L^2) over the surface. The rim is refined because traction is singular there.
-/// Source: [botsch2004].
+/// Wanted lengths: edge_length.hpp. Source: [botsch2004].
 
-#include <palpate/response/smooth_surface.hpp>
+#include <palpate/response/edge_length.hpp>
 
 #include <unordered_map>
 
 namespace palpate {
 
-/// What the remesher works on. Features are edges that stay: creases and the rim.
-struct RemeshParams {
-  double vertices = 600;     ///< wanted number of vertices [-]
-  double rim_ratio = 0.3;    ///< r: edge length at the rim over that of the body [-]
-  double growth = 0.35;      ///< g: edge length gained per distance from the rim [-]
-};
-
 namespace detail {
 
+/// Features are edges that stay: creases and the rim.
 class Remesher {
  public:
   Remesher(const SmoothSurface& surface, const std::vector<std::uint8_t>& fixed_triangle, const RemeshParams& params)
-      : p_(surface.mesh().vertices), t_(surface.mesh().triangles), fixed_(fixed_triangle), surface_(surface), params_(params) {
+      : p_(surface.mesh().vertices), t_(surface.mesh().triangles), fixed_(fixed_triangle), surface_(surface), params_(params), wanted_(surface, params) {
     const auto& edges = surface.edges();
     for (std::size_t e = 0; e < edges.size(); ++e) {
       const bool rim = fixed_[edges[e].triangle[0]] != fixed_[edges[e].triangle[1]];
@@ -38,10 +29,12 @@ class Remesher {
   }
 
   void run() {
-    h_ = uniform_length(4 * params_.vertices);
+    wanted_.uniform(uniform_length(4 * params_.vertices));
     if (double(p_.size()) > 8 * params_.vertices) decimate(true);
+    double aim = params_.vertices;
     for (int pass = 0; pass < 3; ++pass) {
-      fit_length();
+      measure();
+      wanted_.fit(p_, t_, aim);
       if (pass == 0) decimate(false);
       for (int i = 0; i < (pass == 0 ? 6 : 3); ++i) {
         split();
@@ -50,6 +43,8 @@ class Remesher {
         flip();
         relax();
       }
+      // Triangles are not all alike and creases are divided into whole edges: up to a tenth more is usual.
+      aim = std::clamp(aim * 1.1 * params_.vertices / double(p_.size()), 0.75 * params_.vertices, params_.vertices);
     }
     compact();
   }
@@ -58,7 +53,7 @@ class Remesher {
   std::vector<Triangle> t_;
   std::vector<std::uint8_t> fixed_;       // per triangle
   std::vector<std::uint64_t> features_;   // sorted keys of edges that stay
-  [[nodiscard]] double length() const noexcept { return h_; }
+  [[nodiscard]] double length() const noexcept { return wanted_.length(); }
 
  private:
   struct Segment {
@@ -89,56 +84,20 @@ class Remesher {
     return std::sqrt(2 / std::sqrt(3.0) * sum / vertices);
   }
 
-  // Distance of every vertex from the rim, and the wanted edge length from it.
-  void measure_rim() {
-    std::vector<Vec3d> rim;
-    std::vector<std::uint8_t> side(p_.size(), 0);
-    for (std::uint32_t t = 0; t < t_.size(); ++t)
-      for (auto v : t_[t]) side[v] = static_cast<std::uint8_t>(side[v] | (fixed_[t] ? 1 : 2));
-    for (std::size_t v = 0; v < p_.size(); ++v)
-      if (side[v] == 3) rim.push_back(p_[v]);
-    distance_.assign(p_.size(), 0);
-    for (std::size_t v = 0; v < p_.size(); ++v) {
-      double best = (std::numeric_limits<double>::max)();
-      for (const Vec3d& r : rim) best = (std::min)(best, (r - p_[v]).squaredNorm());
-      distance_[v] = std::sqrt(best);
-    }
-  }
-  [[nodiscard]] double wanted(std::uint32_t v) const noexcept {
-    if (distance_.empty()) return h_;
-    return (std::min)(h_, params_.rim_ratio * h_ + params_.growth * distance_[v]);
-  }
-  [[nodiscard]] double wanted(std::uint32_t a, std::uint32_t b) const noexcept { return 0.5 * (wanted(a) + wanted(b)); }
-
-  // h such that the expected number of vertices is the wanted one.
-  void fit_length() {
-    measure_rim();
-    double low = 0.02 * h_, high = 50 * h_;
-    for (int i = 0; i < 60; ++i) {
-      h_ = std::sqrt(low * high);
-      double expected = 0;
-      for (std::uint32_t t = 0; t < t_.size(); ++t) {
-        const double l = (wanted(t_[t][0]) + wanted(t_[t][1]) + wanted(t_[t][2])) / 3;
-        expected += area(t) * 2 / (std::sqrt(3.0) * l * l);
-      }
-      (expected > params_.vertices ? low : high) = h_;
-    }
-  }
+  void measure() { wanted_.measure(p_, t_, fixed_, features_); }
 
   void decimate(bool uniform) {
-    if (uniform) distance_.clear();
     for (int i = 0; i < 60; ++i) {
       const std::size_t before = t_.size();
-      if (!uniform) measure_rim();
-      collapse(true);
+      collapse(uniform);
       if (double(before - t_.size()) < 0.01 * double(before)) break;
     }
   }
 
   void split() {
-    measure_rim();
+    measure();
     std::vector<MeshEdge> edges = mesh_edges(t_, "Remesher");
-    const auto ratio = [&](const MeshEdge& e) { return (p_[e.a()] - p_[e.b()]).norm() / wanted(e.a(), e.b()); };
+    const auto ratio = [&](const MeshEdge& e) { return (p_[e.a()] - p_[e.b()]).norm() / wanted_(e.a(), e.b()); };
     std::vector<std::pair<double, std::uint32_t>> order;
     for (std::uint32_t e = 0; e < edges.size(); ++e)
       if (const double r = ratio(edges[e]); r > 4.0 / 3.0) order.push_back({-r, e});
@@ -193,14 +152,14 @@ class Remesher {
     return count;
   }
 
-  void collapse(bool any_length) {
-    measure_rim_unless_uniform(any_length);
+  void collapse(bool uniform) {
+    if (!uniform) measure();
     const std::vector<MeshEdge> edges = mesh_edges(t_, "Remesher");
     const Rings rings(p_.size(), t_);
     const std::vector<std::uint8_t> rank = ranks();
     std::vector<std::pair<double, std::uint32_t>> order;
     for (std::uint32_t e = 0; e < edges.size(); ++e)
-      if (const double r = (p_[edges[e].a()] - p_[edges[e].b()]).norm() / wanted(edges[e].a(), edges[e].b()); r < 0.8) order.push_back({r, e});
+      if (const double r = (p_[edges[e].a()] - p_[edges[e].b()]).norm() / wanted_(edges[e].a(), edges[e].b()); r < 0.8) order.push_back({r, e});
     std::sort(order.begin(), order.end());
     std::vector<std::uint8_t> locked(p_.size(), 0), dead(t_.size(), 0);
     std::vector<std::uint32_t> moved(p_.size());
@@ -226,9 +185,6 @@ class Remesher {
     std::sort(features_.begin(), features_.end());
     features_.erase(std::unique(features_.begin(), features_.end()), features_.end());
     compact();
-  }
-  void measure_rim_unless_uniform(bool any_length) {
-    if (!any_length) measure_rim();
   }
 
   // Moves v into u and removes the two triangles between them, if the surface stays a good one.
@@ -256,7 +212,7 @@ class Remesher {
       if (after.norm() < 0.05 * longest * longest && after.norm() < before.norm()) return false;
       if (before.dot(after) < 0.5 * before.norm() * after.norm()) return false;
       const double was = std::sqrt((std::max)({(p_[t[0]] - p_[t[1]]).squaredNorm(), (p_[t[1]] - p_[t[2]]).squaredNorm(), (p_[t[2]] - p_[t[0]]).squaredNorm()}));
-      if (longest > 4.0 / 3.0 * wanted(u) && longest > was) return false;
+      if (longest > 4.0 / 3.0 * wanted_(u) && longest > was) return false;
     }
     if (shared != 2) return false;
     for (std::uint32_t i = rings.begin[v]; i < rings.begin[v + 1]; ++i) {
@@ -335,7 +291,7 @@ class Remesher {
   }
 
   void relax() {
-    measure_rim();
+    measure();
     const Rings rings(p_.size(), t_);
     const std::vector<std::uint8_t> rank = ranks();
     for (std::uint32_t v = 0; v < p_.size(); ++v) {
@@ -345,7 +301,7 @@ class Remesher {
       for (std::uint32_t i = rings.begin[v]; i < rings.begin[v + 1]; ++i) {
         for (auto w : t_[rings.item[i]]) {
           if (w == v || (rank[v] == 1 && !is_feature(edge_key(v, w)))) continue;
-          const double l = wanted(v, w);
+          const double l = wanted_(v, w);
           sum += (p_[w] - p_[v]) / l;  // shorter edges where they are wanted
           weight += 1 / l;
         }
@@ -376,11 +332,10 @@ class Remesher {
       if (number[v] == ~0u) continue;
       number[v] = count;
       p_[count] = p_[v];
-      if (!distance_.empty()) distance_[count] = distance_[v];
       ++count;
     }
     p_.resize(count);
-    if (!distance_.empty()) distance_.resize(count);
+    wanted_.renumber(number, count);
     for (auto& t : t_)
       for (auto& v : t) v = number[v];
     for (auto& key : features_) key = edge_key(number[key >> 32], number[key & 0xffffffffu]);
@@ -390,8 +345,7 @@ class Remesher {
   const SmoothSurface& surface_;
   RemeshParams params_;
   std::vector<Segment> segments_;
-  std::vector<double> distance_;
-  double h_ = 1;
+  EdgeLength wanted_;
 };
 
 }  // namespace detail

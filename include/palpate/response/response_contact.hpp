@@ -22,7 +22,8 @@ class ResponseTick {
         total_(3 * field.stride(), 0.f),
         second_(3 * field.stride(), 0.f),
         near_(Capacity * 3 * field.stride(), 0.f),
-        weight_(field.touch().solved(), 0.f) {
+        weight_(field.touch().solved(), 0.f),
+        moment_(3 * field.touch().solved(), 0.f) {
     patch_.reserve(weight_.size());
   }
 
@@ -146,8 +147,19 @@ class ResponseTick {
       const auto column = [&](std::uint32_t node, std::size_t l) {
         return Row(field_->column(node, l), size);
       };
+      const bool wide = k.moments.share > 0;
+      Mat3<float> held = Mat3<float>::Zero();
+      if (wide) {
+        contact_.find_moments(k, weight_.data(), moment_.data());
+        held = k.moments.tensor(k.held).template cast<float>();
+      }
       for (auto node : patch_) {
-        const Vec3<float> f = weight_[node] * k.P.template cast<float>();
+        Vec3<float> f = weight_[node] * k.P.template cast<float>();
+        if (wide) {
+          Eigen::Map<Vec3<float>> q(&moment_[3 * node]);
+          f += held * q;
+          q.setZero();
+        }
         sum += f[0] * column(node, 0) + f[1] * column(node, 1) + f[2] * column(node, 2);
       }
       if (k.dipole != 0) add_second(k);
@@ -174,20 +186,18 @@ class ResponseTick {
   void hold_back() noexcept {
     double d2 = 0;
     for (std::size_t c = 0; c < count_; ++c) d2 = (std::max)(d2, contact_[c].d.squaredNorm());
-    const float share = fading(total_, 16 * d2);
-    if (share > 0.999f) return;
+    const auto share = static_cast<float>(detail::fading(largest(total_), 16 * d2));
+    if (!(share < 1)) return;
     const std::size_t n = field_->stride();
     Eigen::Map<Eigen::ArrayXf>(total_.data(), static_cast<Eigen::Index>(total_.size())) *= share;
     Eigen::Map<Eigen::ArrayXf>(near_.data(), static_cast<Eigen::Index>(3 * count_ * n)) *= share;
     for (std::size_t c = 0; c < count_; ++c) near_field_[c].scale(share);
   }
-  // (1 + (u^2/most2)^4)^(-1/8) for the largest u of a field at the solve mesh's vertices.
-  [[nodiscard]] float fading(const std::vector<float>& field, double most2) const noexcept {
+  // Largest u^2 of a field at the solve mesh's vertices.
+  [[nodiscard]] double largest(const std::vector<float>& field) const noexcept {
     const auto n = static_cast<Eigen::Index>(field_->stride());
     const Eigen::Map<const Eigen::ArrayXf> u(field.data(), 3 * n);
-    const float largest = (u.head(n).square() + u.segment(n, n).square() + u.tail(n).square()).maxCoeff();
-    const double r2 = most2 > 0 ? double(largest) / most2 : 0, r8 = r2 * r2 * r2 * r2;
-    return static_cast<float>(1 / std::sqrt(std::sqrt(std::sqrt(1 + r8))));
+    return double((u.head(n).square() + u.segment(n, n).square() + u.tail(n).square()).maxCoeff());
   }
 
   // The body's answer to the loads of second order. Where the mesh does not resolve it, it can be any size: held to about
@@ -198,14 +208,15 @@ class ResponseTick {
     Eigen::Map<Eigen::ArrayXf> second(second_.data(), size);
     second.setZero();
     for (auto node : patch_) {
-      const Vec3<float> g = weight_[node] * contact_.second_loads(c, node).template cast<float>();
+      const Vec3<float> g = weight_[node] * detail::second_loads(*field_, c, node).template cast<float>();
       const auto column = [&](std::size_t l) { return Row(field_->column(node, l), size); };
       if (c.tilt.squaredNorm() > 0)
         second += g[0] * column(3) + g[1] * column(4) + g[2] * column(5);
       else
         second += g[0] * column(3);
     }
-    Eigen::Map<Eigen::ArrayXf>(total_.data(), size) += fading(second_, 4 * c.d.squaredNorm()) * second;
+    const double share = detail::fading(largest(second_), 4 * c.d.squaredNorm());
+    Eigen::Map<Eigen::ArrayXf>(total_.data(), size) += static_cast<float>(share) * second;
   }
 
   // Linear over one triangle of the solve mesh, by coordinate: corner 0, and the edges from it.
@@ -295,6 +306,7 @@ class ResponseTick {
   std::vector<float> second_;         // scratch
   std::vector<float> near_;           // near field per contact, likewise
   std::vector<float> weight_;         // per solved node: its part of a contact's force; 0 between uses
+  std::vector<float> moment_;         // three numbers each, likewise
   std::vector<std::uint32_t> patch_;  // nodes with a part; never more than reserved
 };
 

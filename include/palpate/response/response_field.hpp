@@ -12,7 +12,7 @@
 ///
 /// Memory: 72 n n_free bytes for the columns (n = 600: 25 MB), see `memory()`; during set-up about 250 n^2 bytes more.
 /// Set-up: O(n^3), seconds. Several pieces are allowed, each held somewhere.
-/// Limits: small strain per unit load; parts thinner than two edges of the solve mesh are not resolved.
+/// Limits: small strain per unit load; parts thinner than an edge of the solve mesh bend too little: `unresolved_area()`.
 /// Reports (error.hpp) bad E, nu, mesh or fixed region. Source: [brebbia1984], [james1999].
 
 #include <palpate/response/patch_table.hpp>
@@ -31,6 +31,7 @@ struct ResponseParts {
   std::vector<float> columns;
   std::vector<PatchTable::Own> own;
   std::vector<PatchTable::Second> second;
+  std::vector<PatchTable::Moments> moments;
   std::vector<std::uint32_t> spread_begin;  ///< see PatchTable
   std::vector<TouchMesh::Share> spread;
 };
@@ -82,8 +83,8 @@ class ResponseField {
     const std::size_t levels = parts.second.size() / parts.nodes.size();
     touch_ = TouchMesh(std::move(parts.nodes), std::move(parts.triangles), std::move(parts.share_begin),
                        std::move(parts.shares));
-    table_ = PatchTable(touch_, std::move(parts.own), std::move(parts.second), levels,
-                        std::move(parts.spread_begin), std::move(parts.spread));
+    table_ = PatchTable(touch_, std::move(parts.own), std::move(parts.second), std::move(parts.moments),
+                        levels, std::move(parts.spread_begin), std::move(parts.spread));
     place_vertices();
   }
   [[nodiscard]] ResponseParts parts() const {
@@ -97,6 +98,7 @@ class ResponseField {
             columns_,
             table_.own_rows(),
             table_.second_rows(),
+            table_.moment_rows(),
             table_.spread_begin(),
             table_.all_spread()};
   }
@@ -105,6 +107,9 @@ class ResponseField {
   [[nodiscard]] double nu() const noexcept { return nu_; }
   [[nodiscard]] double shear_modulus() const noexcept { return E_ / (2 * (1 + nu_)); }
   [[nodiscard]] const SolveMesh& mesh() const noexcept { return mesh_; }
+  /// Fraction of the free surface's area where the body is thinner than the solve mesh's edges (see palpate::unresolved_area):
+  /// 0 is good, 1 is a plate with too few vertices. Milliseconds; set-up only.
+  [[nodiscard]] double unresolved_area() const { return palpate::unresolved_area(mesh_); }
   [[nodiscard]] const TouchMesh& touch() const noexcept { return touch_; }
   [[nodiscard]] const PatchTable& table() const noexcept { return table_; }
   /// Bytes that a tick may read.

@@ -25,7 +25,7 @@
 
 namespace palpate {
 
-inline constexpr std::uint32_t saved_field_version = 2;
+inline constexpr std::uint32_t saved_field_version = 3;
 
 namespace detail {
 
@@ -134,6 +134,7 @@ class ByteReader {
   body.put_list(parts.shares);
   body.put_list(parts.own);
   body.put_list(parts.second);
+  body.put_list(parts.moments);
   body.put_list(parts.spread_begin);
   body.put_list(parts.spread);
   body.put_list(parts.columns);
@@ -162,7 +163,7 @@ class ByteReader {
   std::memcpy(&size, bytes.data() + 16, 8);
   std::memcpy(&sum, bytes.data() + 24, 8);
   if (order != 0x01020304) fail(where, "saved on a machine with the other byte order");
-  if (version != saved_field_version) fail(where, "the format's version is not this library's 2", version);
+  if (version != saved_field_version) fail(where, "the format's version is not this library's 3", version);
   const std::span<const std::byte> content = bytes.subspan(detail::saved_head);
   if (content.size() != size)
     fail(where, "cut short or too long: bytes missing (more than there should be: < 0)",
@@ -183,6 +184,7 @@ class ByteReader {
   parts.shares = in.get_list<TouchMesh::Share>();
   parts.own = in.get_list<PatchTable::Own>();
   parts.second = in.get_list<PatchTable::Second>();
+  parts.moments = in.get_list<PatchTable::Moments>();
   parts.spread_begin = in.get_list<std::uint32_t>();
   parts.spread = in.get_list<TouchMesh::Share>();
   parts.columns = in.get_list<float>();
@@ -215,8 +217,8 @@ class ByteReader {
   require(parts.columns.size() == ResponseField::loads * 3 * ResponseField::padded(n) * solved,
           "the columns' length is not the mesh's");
   const std::size_t levels = parts.second.size() / k;
-  require(parts.second.size() == levels * k && levels >= 2 && levels < 64 &&
-              parts.own.size() == levels * parts.triangles.size(),
+  require(parts.second.size() == levels * k && parts.moments.size() == levels * k && levels >= 2 &&
+              levels < 64 && parts.own.size() == levels * parts.triangles.size(),
           "the tables' lengths are not the nodes'");
   require_shares(parts.spread_begin, parts.spread, levels * k, k, solved);
   for (const auto& t : parts.mesh.triangles)
@@ -244,6 +246,13 @@ class ByteReader {
       for (float e : pair) require(is_finite(e), "a table is not finite");
   for (const auto& row : parts.second)
     for (float e : row.mean) require(is_finite(e), "a table is not finite");
+  for (const auto& row : parts.moments) {
+    bool good = is_finite(row.sag);
+    for (const auto& mean : row.mean)
+      for (float e : mean) good = good && is_finite(e);
+    for (float e : row.own) good = good && is_finite(e);
+    require(good, "a table is not finite");
+  }
   return ResponseField(std::move(parts));
 }
 

@@ -99,6 +99,13 @@ struct MeshEdge {
   }
   return fan;
 }
+
+/// Way [m] through the inside of a closed mesh from a point of it, at most `most`; `most` where nothing is met.
+[[nodiscard]] inline double way_through(const TriangleBvh<double>& tree, const Vec3d& from, const Vec3d& inward, double most) noexcept {
+  const double skip = 1e-4 * most;  // the triangles that the point lies on do not count
+  const auto hit = tree.raycast(from + skip * inward, inward);
+  return hit.triangle == TriangleBvh<double>::none ? most : (std::min)(skip + hit.t, most);
+}
 }  // namespace detail
 
 /// A closed mesh with its creases, corner normals and closest-point tree.
@@ -176,6 +183,13 @@ class SmoothSurface {
     Vec3<double> p, n;
     evaluate(tree_->closest(x), p, n);
     return n;
+  }
+  /// Thickness [m], along the normal, at the surface's point near x; at most `most` > 0.
+  [[nodiscard]] double thickness_at(const Vec3<double>& x, double most) const noexcept {
+    Vec3<double> p, n;
+    const auto at = tree_->closest(x);
+    evaluate(at, p, n);
+    return detail::way_through(*tree_, at.position, -n, most);
   }
 
  private:

@@ -2,7 +2,7 @@
 #include <palpate/response/boundary_element.hpp>
 
 #include "support/check.hpp"
-#include "support/response_meshes.hpp"
+#include "support/response_bodies.hpp"
 
 namespace {
 using namespace palpate;
@@ -101,12 +101,13 @@ TEST_CASE("set-up refuses an open mesh, an empty fixed region, nu out of range")
   CHECK_THROWS_AS(BoundaryElements(solve_mesh(test::box_mesh(V(1, 1, 1), 4), 1e-9, 60), 0.51, 1), SetupError);
 }
 
-TEST_CASE("bar 1:6 held at its end: bent, Timoshenko's deflection; twisted, Saint-Venant's, with the observed order") {
+TEST_CASE("bar 1:6 held at its end: bent, Timoshenko's deflection; twisted, Saint-Venant's rate, with the observed order") {
   // nu = 0: the held end does not disturb the beam's stress.
   const double length = 6, E = 2, mu = 1;
-  double bent[2], twisted[2], edge[2];
-  for (int k = 0; k < 2; ++k) {
-    const SolveMesh m = solve_mesh(test::box_mesh(V(1, length, 1), 8), 1e-9, k == 0 ? 130 : 320);
+  struct Errors {
+    double bent, twisted;
+  };
+  const auto errors = [&](const SolveMesh& m) {
     BoundaryElements bem(m, 0.0, 1);
     detail::Matrix u(3 * Eigen::Index(m.vertices.size()), 2);
     VectorXd bend = VectorXd::Zero(3 * Eigen::Index(m.nodes.size())), twist = bend;
@@ -120,30 +121,43 @@ TEST_CASE("bar 1:6 held at its end: bent, Timoshenko's deflection; twisted, Sain
     u.col(1) = bem.G() * twist;
     bem.factorise();
     bem.solve(u);
-    double deflection = 0, count = 0, angle = 0, arm = 0;
+    // The angle per length, by least squares, of what is a width away from both ends (Saint-Venant's principle).
+    double deflection = 0, count = 0;
+    Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d b = Eigen::Vector2d::Zero();
     for (std::size_t v = 0; v < m.vertices.size(); ++v) {
-      const V x = m.vertices[v] - V(0.5, length - 1, 0.5);
-      if (x.y() > 1 - 1e-9) {
+      const V& x = m.vertices[v];
+      if (x.y() > length - 1e-9) {
         deflection += u(3 * Eigen::Index(v) + 2, 0);
         ++count;
       }
-      // A section's turn, one width from the loaded end (Saint-Venant's principle): between 0.6 and 1.4 widths, at its own y.
-      if (std::abs(x.y()) < 0.4) {
-        const V turned = V::UnitY().cross(x);
-        angle += turned.dot(u.block<3, 1>(3 * Eigen::Index(v), 1)) / m.vertices[v].y();
-        arm += turned.squaredNorm();
-      }
+      if (x.y() < 1 || x.y() > length - 1) continue;
+      const V turned = V::UnitY().cross(x - V(0.5, 0, 0.5));
+      const Eigen::Vector2d line(1, x.y());
+      A += turned.squaredNorm() * line * line.transpose();
+      b += turned.dot(u.block<3, 1>(3 * Eigen::Index(v), 1)) * line;
     }
     // Force 1, moment of the twist 1/6: the polar moment of a unit square. Square: J = 0.140577.
     const double tip = length * length * length / (3 * E / 12) + 1.2 * length / mu;
-    bent[k] = deflection / count / tip - 1;
-    twisted[k] = angle / arm / ((1.0 / 6) / (0.140577 * mu)) - 1;
-    edge[k] = m.length;
+    const Eigen::Vector2d angle = A.inverse() * b;
+    return Errors{deflection / count / tip - 1, angle[1] / ((1.0 / 6) / (0.140577 * mu)) - 1};
+  };
+  const Errors remeshed = errors(solve_mesh(test::box_mesh(V(1, length, 1), 8), 1e-9, 320));
+  MESSAGE("remeshed: bent ", remeshed.bent, ", twisted ", remeshed.twisted);
+  CHECK(std::abs(remeshed.bent) < 0.02);  // linear u: 0.1
+  CHECK(std::abs(remeshed.twisted) < 0.05);
+  // An order takes meshes of one kind: regular ones, as many squares across as said, not remeshed.
+  double twisted[3];
+  for (int k = 0; k < 3; ++k) {
+    const int across = k + 2;
+    const SmoothSurface bar(test::cells_mesh({across, 6 * across, across}, 1.0 / across, [](int, int, int) { return true; }));
+    std::vector<std::uint8_t> held;
+    for (const auto& t : bar.mesh().triangles)
+      held.push_back(bar.mesh().vertices[t[0]].y() + bar.mesh().vertices[t[1]].y() + bar.mesh().vertices[t[2]].y() < 1e-9);
+    twisted[k] = errors(detail::finish_solve_mesh(bar, detail::Remesher(bar, held, {}))).twisted;
   }
-  const auto order = [&](const double* e) { return std::log(std::abs(e[0] / e[1])) / std::log(edge[0] / edge[1]); };
-  MESSAGE("bent ", bent[0], " to ", bent[1], ", order ", order(bent), "; twisted ", twisted[0], " to ", twisted[1], ", order ",
-          order(twisted));
-  CHECK(std::abs(bent[1]) < 0.02);     // linear u: 0.1
-  CHECK(std::abs(twisted[1]) < 0.05);  // warping is held at the end: about 1 %
-  CHECK(std::abs(twisted[1]) < std::abs(twisted[0]));
+  const double order[] = {std::log(twisted[0] / twisted[1]) / std::log(3.0 / 2), std::log(twisted[1] / twisted[2]) / std::log(4.0 / 3)};
+  MESSAGE("2, 3, 4 squares across: twisted ", twisted[0], ", ", twisted[1], ", ", twisted[2], ", order ", order[0], ", ", order[1]);
+  CHECK(order[0] > 2);  // u is quadratic, third order; linear u has at most second
+  CHECK(order[1] > 2.5);
 }

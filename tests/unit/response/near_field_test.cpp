@@ -44,6 +44,10 @@ TEST_CASE("disc loads equal the integral of point loads, nu = 0, 0.3, 1/2") {
       CHECK_ABSOLUTE((vector(disc.hertz(f.z(), nu), t) - hertz).norm() / hertz.norm(), 0.0, 1e-4);
       const V pair = disc_mean([&](const V& x, double) { return V(1.5 * point_load<double>(r - x, m, x, nu)); });
       CHECK_ABSOLUTE((vector(disc.double_force(nu), t) - pair).norm() / pair.norm(), 0.0, 1e-4);
+      Mat3<double> s = Mat3<double>::Zero();  // symmetric, without trace
+      s.topLeftCorner<2, 2>() << f.x(), f.y(), f.y(), -f.x();
+      const V shear = disc_mean([&](const V& x, double) { return V(1.5 * point_load<double>(r - x, m, V(s * x), nu)); });
+      CHECK_ABSOLUTE((vector(disc.shear(p.dot(s * p), nu), V(s * p)) - shear).norm() / shear.norm(), 0.0, 1e-4);
       if (nu == 0.5) {
         const V tilt = disc_mean([&](const V& x, double) { return V(3 * x.dot(t) * point_load<double>(r - x, m, m, nu)); });
         CHECK_ABSOLUTE((vector(disc.tilt(t.dot(p), nu), t) - tilt).norm() / tilt.norm(), 0.0, 1e-4);

@@ -4,7 +4,7 @@
 
 #include "support/check.hpp"
 #include "support/no_heap.hpp"
-#include "support/response_meshes.hpp"
+#include "support/response_bodies.hpp"
 
 namespace {
 using namespace palpate;
@@ -80,6 +80,48 @@ TEST_CASE("field: patch moves by d, held vertices rest, reciprocity, forces of t
   finer.solve(two, 2, again);
   CHECK_RELATIVE(F[0].norm(), again[0].norm(), 0.02);
   CHECK_RELATIVE(F[1].norm(), again[1].norm(), 0.02);
+}
+
+TEST_CASE("near field of second order: the patch moves as one, no jump at its edge or below its axis") {
+  const ResponseField field = ellipsoid(0.5, 60);  // nu = 1/2: the disc's own field is uniform within
+  detail::ContactSystem<1> contacts(field, {});
+  auto& c = contacts[0];
+  const double a = 0.005;
+  c.x = V(0.004, 0.0399, 0);
+  c.m = -V::UnitY();
+  c.d = V(0.0015, -0.004, 0);
+  c.a = a;
+  contacts.locate(c);
+  contacts.solve(1);
+  const detail::ContactNear near = contacts.near_of(c);
+  const auto at = [&](double along, double down) {
+    const V x = c.x + a * along * V(0.8, 0, 0.6) + a * down * c.m;
+    const auto lane = [](double value) { return detail::Lane(detail::Lane::Constant(static_cast<float>(value))); };
+    const detail::Lane3 u = near({lane(x.x()), lane(x.y()), lane(x.z())});
+    return V(double(u.x[0]), double(u.y[0]), double(u.z[0]));
+  };
+  for (double s : {0.3, 0.7, 0.999}) CHECK((at(s, 0) - at(0, 0)).norm() < 1e-4 * c.d.norm());  // float, the disc's arctangent: 1e-5
+  // Beyond the edge as sqrt(s - 1): 2e-3 of d. When the terms of second order began there: half of d.
+  for (double down : {0.0, 0.3, -0.3}) {
+    const double rim = std::sqrt(1 - down * down);
+    CHECK((at(rim * (1 + 1e-5), down) - at(rim * (1 - 1e-5), down)).norm() < 0.01 * c.d.norm());
+  }
+  CHECK((at(1e-4, 1.5) - at(-1e-4, 1.5)).norm() < 1e-3 * c.d.norm());
+}
+
+TEST_CASE("places of loads: on the body, and no triangle between them folds over, where parts of the surface have reflex corners") {
+  const test::ResponseBody bowl = test::response_bodies()[6];
+  std::vector<std::uint8_t> held;
+  const auto& v = bowl.mesh.vertices;
+  for (const auto& t : bowl.mesh.triangles) held.push_back((v[t[0]].y() + v[t[1]].y() + v[t[2]].y()) / 3 < bowl.held_below);
+  const SolveMesh solve = make_solve_mesh(SmoothSurface(bowl.mesh), held, {.vertices = 200});
+  const TriangleBvh<double> body(bowl.mesh);
+  const TouchMesh touch(solve);
+  for (const auto& node : touch.nodes()) CHECK(std::sqrt(body.closest(node.source).distance2) < 1e-9);
+  for (const auto& t : touch.triangles()) {
+    const auto &p = touch.nodes()[t[0]], &q = touch.nodes()[t[1]], &r = touch.nodes()[t[2]];
+    CHECK((q.source - p.source).cross(r.source - p.source).dot(p.normal + q.normal + r.normal) > 0);
+  }
 }
 
 TEST_CASE("bad input: reported at set-up, zero in a tick") {

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  One placed contact, and what one contact does to the patch of another. Per tick.
+///
+/// The displacement of patch i by the force on patch j, averaged over i, is that of a disc with the square sum of the radii:
+/// exact to second moments, and never singular when patches meet.
+
+#include <palpate/core/fixed_vector.hpp>
+#include <palpate/response/patch_moments.hpp>
+
+namespace palpate::detail {
+
+/// Solved nodes that share a contact's force.
+struct PatchWeight {
+  std::uint32_t node;
+  double weight;
+};
+constexpr std::size_t place_nodes = 3 * TouchMesh::most_parts;
+
+/// One contact placed and solved.
+struct PlacedContact {
+  Vec3<double> x, m, d;  ///< m: unit normal into the body
+  double a = 0;
+  double least = 0;  ///< smaller compliance of the half-space, times mu
+  double ball = 0;   ///< radius of the sphere; 0: stuck patch
+  TouchPlace place;
+  FixedVector<PatchWeight, place_nodes> nodes;  ///< solved ones at the place
+  double carried = 1;                           ///< of the force, not by what is held
+  double share = 1;                             ///< of w that counts
+  PatchTable::Level level;                      ///< of the radius
+  Mat3<double> w, C, S;                         ///< correction, sum, times mu; the sum's inverse
+  Vec3<double> rhs;
+  Vec3<double> P = Vec3<double>::Zero();      ///< force / mu
+  Vec3<double> extra = Vec3<double>::Zero();  ///< force / mu that the tool feels and the field does not
+  double dipole = 0, dn2 = 0;                 ///< / mu
+  Vec3<double> tilt = Vec3<double>::Zero();   ///< / mu
+  Vec3<double> turn = Vec3<double>::Zero();   ///< its part of second order
+  Vec3<double> push = Vec3<double>::Zero();
+  double sag = 0;                  ///< how deep the patch's edge lies below its plane, at most
+  PatchMoments moments;            ///< of a wide patch
+  Moments held = Moments::Zero();  ///< its loads / mu
+
+  void hold_moments() noexcept { held = -moments.give * (moments.G * P + moments.of_loads(dipole, tilt)); }
+};
+
+/// Size of the nodes around the contact's place, interpolated.
+[[nodiscard]] inline double mean_size(const ResponseField& field, const PlacedContact& c) noexcept {
+  double size = 0;
+  for (std::size_t i = 0; i < 3; ++i)
+    size += c.place.weight[Eigen::Index(i)] * field.touch().nodes()[c.place.node[i]].size;
+  return size;
+}
+
+/// each(part, node, level) for the spreads (PatchTable) that together are the contact's. Interpolated twice, over the place's
+/// triangle and over those that the spreads lie on: a quarter of size^2 each time.
+template <class Each>
+void each_spread(const ResponseField& field, const PlacedContact& c, const Each& each) noexcept {
+  const double size = mean_size(field, c);
+  const PatchTable::Level level = field.table().level(c.a * c.a - 0.5 * size * size);
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t l = 0; l < 2; ++l)
+      each(c.share * c.place.weight[Eigen::Index(i)] * (l == 0 ? 1 - level.part : level.part),
+           c.place.node[i], level.below + l);
+}
+/// each(node, q) (moment_loads.hpp) of the contact.
+template <class Each>
+void each_moment(const ResponseField& field, const PlacedContact& c, const Each& each) noexcept {
+  each_spread(field, c, [&](double part, std::uint32_t k, std::size_t level) {
+    each_moment(field.touch(), k, field.table().spread(k, level),
+                [&](std::uint32_t node, const Vec3<double>& q) { each(node, Vec3<double>(part * q)); });
+  });
+}
+
+/// Double force and tilts as node k has them.
+[[nodiscard]] inline Vec3<double> second_loads(const ResponseField& field, const PlacedContact& c,
+                                               std::uint32_t k) noexcept {
+  const Vec3<double>& n = field.touch().nodes()[k].normal;
+  const Vec3<double> t1 = perpendicular(n);
+  return {c.dipole, c.tilt.dot(t1), c.tilt.dot(n.cross(t1))};
+}
+
+/// Near field at r from contact j of unit forces on a disc of radius a, times mu [1/m].
+[[nodiscard]] inline Mat3<double> near_of_forces(const PlacedContact& cj, const Vec3<double>& r, double a,
+                                                 double nu) noexcept {
+  constexpr double scale = 1 / (4 * std::numbers::pi);
+  const Vec3<double> p = tangential(r, cj.m);
+  const Disc<double> disc(p.squaredNorm(), edge_depth(r, cj.m, a, cj.sag), a);
+  Mat3<double> out;
+  for (int l = 0; l < 3; ++l) {
+    const double fn = cj.m[l];
+    const Vec3<double> t = Vec3<double>::Unit(l) - fn * cj.m;
+    const auto u = disc.flat(fn, t.dot(p), nu);
+    out.col(l) = scale * (u.in_plane * p + u.normal * cj.m + u.along * t);
+  }
+  return out;
+}
+
+/// Mean displacement of patch i by unit forces on patch j.
+[[nodiscard]] inline Mat3<double> coupling(const ResponseField& field, const PlacedContact& ci,
+                                           const PlacedContact& cj) noexcept {
+  Mat3<double> out = ci.carried * cj.carried *
+                     near_of_forces(cj, Vec3<double>(ci.x - cj.x), std::hypot(ci.a, cj.a), field.nu());
+  for (const PatchWeight& i : ci.nodes)
+    for (const PatchWeight& j : cj.nodes) {
+      const double g = ci.share * cj.share * i.weight * j.weight;
+      for (std::size_t l = 0; l < 3; ++l) out.col(Eigen::Index(l)) += g * field.at(i.node, j.node, l);
+    }
+  return out;
+}
+/// Displacement of patch i by contact j's loads of second order.
+[[nodiscard]] inline Vec3<double> second_order(const ResponseField& field, const PlacedContact& ci,
+                                               const PlacedContact& cj) noexcept {
+  const double nu = field.nu(), a = std::hypot(ci.a, cj.a);
+  const Vec3<double> r = ci.x - cj.x, p = tangential(r, cj.m);
+  const Disc<double> disc(p.squaredNorm(), edge_depth(r, cj.m, a, cj.sag), a);
+  const auto d = disc.double_force(nu), t = disc.tilt(cj.tilt.dot(p), nu);
+  Vec3<double> out = ((cj.dipole * d.in_plane + t.in_plane) * p + (cj.dipole * d.normal + t.normal) * cj.m +
+                      t.along * cj.tilt) /
+                     (4 * std::numbers::pi);
+  out *= ci.carried * cj.carried;
+  for (const PatchWeight& j : cj.nodes) {
+    const Vec3<double> load = ci.share * cj.share * j.weight * second_loads(field, cj, j.node);
+    for (const PatchWeight& i : ci.nodes)
+      for (std::size_t l = 0; l < 3; ++l)
+        out += i.weight * load[Eigen::Index(l)] * field.at(i.node, j.node, 3 + l);
+  }
+  return out;
+}
+
+}  // namespace palpate::detail

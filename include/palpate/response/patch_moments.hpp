@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Holds a wide stuck patch as a whole, not in its mean alone. Per tick.
+///
+/// Over a patch that is wide for its body, w pulls apart and turns what is stuck. Five more loads hold that: a radial double force,
+/// two shears, two tilts, each with the flat disc's weight times the distance from its centre. Their strengths y are what makes the
+/// patch's own moments vanish (Ritz: the energy of all loads is least):
+///
+///     y = -D^-1 (G P + W M),   D = D_near + W,   C -> C - G^T D^-1 G
+///
+/// | symbol | name                                                                      | unit  |
+/// |--------|---------------------------------------------------------------------------|-------|
+/// | P, M   | force / mu; loads that the contact has anyway (SecondOrder) / mu          | m^2, m^3 |
+/// | G, W   | moments of w over the patch by unit forces and by unit moments, times mu  | 1/m^2, 1/m^3 |
+/// | D_near | the half-space's: 3 (1-nu)/(16 a^3), 3 (2-nu)/(32 a^3), 3 (1-nu)/(8 a^3)  | 1/m^3 |
+///
+/// A patch of less than an edge of the solve mesh has none of it, one of one and a half edges all; in between a share. The more of a
+/// patch lies on what is held the less: from half on none. Of one contact alone: what several have to do with each other's moments is
+/// not known, and without it they come out worse than held in the mean. Nothing is fitted. docs/accuracy.md.
+
+#include <palpate/response/contact_near.hpp>
+#include <palpate/response/held_compliance.hpp>
+#include <palpate/response/response_field.hpp>
+
+#include <Eigen/Cholesky>
+
+namespace palpate::detail {
+
+using Moments = Eigen::Matrix<double, 5, 1>;
+using MomentsByForce = Eigen::Matrix<double, 5, 3>;
+using MomentMatrix = Eigen::Matrix<double, 5, 5>;
+
+struct PatchMoments {
+  double share = 0;  ///< 0: narrow, the rest is not set
+  Vec3<double> t1, t2, m;
+  MomentsByForce G;
+  MomentMatrix W, give;  ///< give: share D^-1
+
+  [[nodiscard]] static double share_of(double a, double size) noexcept {
+    const double t = std::clamp(2 * (a / size - 1), 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+  }
+
+  /// Of a patch of radius a at a place of the touch mesh. `counts`: of w. `stuck`: radial double force of a unit normal force.
+  void read(const ResponseField& field, const TouchPlace& place, const PatchTable::Level& level,
+            const Vec3<double>& inward, double a, double counts, double stuck) noexcept {
+    m = inward;
+    t1 = perpendicular(Vec3<double>(-m));
+    t2 = t1.cross(m);
+    G.setZero();
+    W.setZero();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::size_t k = place.node[i];
+      const Vec3<double>& n = field.touch().nodes()[k].normal;
+      const Vec3<double> k1 = perpendicular(n), k2 = n.cross(k1);
+      // The least turn from one plane into the other; between opposite normals, where there is none, nothing is left.
+      const double c = 0.5 * (t1.dot(k1) + t2.dot(k2)), s = 0.5 * (t1.dot(k2) - t2.dot(k1));
+      MomentMatrix T = MomentMatrix::Zero();  // these loads as the node's
+      T(0, 0) = 1;
+      T.block<2, 2>(1, 1) << c * c - s * s, -2 * c * s, 2 * c * s, c * c - s * s;
+      T.block<2, 2>(3, 3) << c, -s, s, c;
+      MomentsByForce mean = MomentsByForce::Zero();
+      MomentMatrix own = MomentMatrix::Zero();
+      for (std::size_t l = 0; l < 2; ++l) {
+        const double part = counts * place.weight[Eigen::Index(i)] * (l == 0 ? 1 - level.part : level.part);
+        const PatchTable::Moments& row = field.table().moments(k, level.below + l);
+        for (int r = 0, e = 0; r < 5; ++r) {
+          for (int j = 0; j < 3; ++j) mean(r, j) += part * double(row.mean[r][j]);
+          for (int j = 0; j <= r; ++j) own(r, j) += part * double(row.own[e++]);
+        }
+      }
+      own.triangularView<Eigen::StrictlyUpper>() = own.transpose();
+      G.noalias() += T.transpose() * mean;
+      W.noalias() += T.transpose() * own * T;
+    }
+    // For nu < 1/2 a force has a double force and a tilt of its own.
+    MomentsByForce with = MomentsByForce::Zero();
+    with.row(0) = stuck * m.transpose();
+    with.row(3) = -0.5 * stuck * t1.transpose();
+    with.row(4) = -0.5 * stuck * t2.transpose();
+    G.noalias() += W * with;
+    const double nu = field.nu(), unit = 3 / (32 * a * a * a);
+    Moments root;  // of 1 / D_near
+    root << 2 * (1 - nu), 2 - nu, 2 - nu, 4 * (1 - nu), 4 * (1 - nu);
+    root = (unit * root).cwiseSqrt().cwiseInverse();
+    MomentMatrix D = root.asDiagonal() * W * root.asDiagonal();
+    D.diagonal().array() += 1;
+    if (Eigen::LLT<MomentMatrix>(D - 0.1 * MomentMatrix::Identity()).info() != Eigen::Success) {
+      hold_above(D, 0.1);
+      const Moments inverse = root.cwiseInverse();
+      W = inverse.asDiagonal() * (D - MomentMatrix::Identity()) * inverse.asDiagonal();
+    }
+    give = root.asDiagonal() * (share * D.llt().solve(MomentMatrix(root.asDiagonal())));
+  }
+
+  /// What the held moments take from a compliance whose trace is `whole`. They take less than all of it, in theory; where the mesh
+  /// does not resolve w, they are held to half.
+  [[nodiscard]] Mat3<double> taken(double whole) noexcept {
+    const Mat3<double> all = G.transpose() * give * G;
+    const double r = 2 * all.trace() / whole, r2 = r * r, r4 = r2 * r2,
+                 less = 1 / std::sqrt(std::sqrt(1 + r4));
+    give *= less;
+    share *= less;
+    return less * all;
+  }
+
+  /// Moments of w by a contact's double force and tilt.
+  [[nodiscard]] Moments of_loads(double dipole, const Vec3<double>& tilt) const noexcept {
+    Moments loads;
+    loads << dipole, 0, 0, tilt.dot(t1), tilt.dot(t2);
+    return W * loads;
+  }
+  /// Loads as a tensor A: a node's force is A q (moment_loads.hpp).
+  [[nodiscard]] Mat3<double> tensor(const Moments& y) const noexcept {
+    return y[0] * Mat3<double>::Identity() + shear(y) + 2 * m * tilt(y).transpose();
+  }
+  [[nodiscard]] Mat3<double> shear(const Moments& y) const noexcept {
+    const Mat3<double> across = t1 * t2.transpose();
+    return y[1] * (t1 * t1.transpose() - t2 * t2.transpose()) + y[2] * (across + across.transpose());
+  }
+  [[nodiscard]] Vec3<double> tilt(const Moments& y) const noexcept { return y[3] * t1 + y[4] * t2; }
+};
+
+}  // namespace palpate::detail
