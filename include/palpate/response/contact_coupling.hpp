@@ -28,6 +28,7 @@ struct PlacedContact {
   FixedVector<PatchWeight, place_nodes> nodes;  ///< solved ones at the place
   double carried = 1;                           ///< of the force, not by what is held
   double share = 1;                             ///< of w that counts
+  double grip = 1;  ///< 0: let go, for others have moved its patch as far as it would (ContactSystem::loosen)
   PatchTable::Level level;                      ///< of the radius
   Mat3<double> w, C, S;                         ///< correction, sum, times mu; the sum's inverse
   Vec3<double> rhs;

@@ -11,8 +11,8 @@
 /// | w      | the body's correction, times mu                                          | 1/m    |
 /// | q, w_2 | second order in depth (SecondOrder): universal forces, the body's answer | m^2, m |
 ///
-/// What contacts do to each other: contact_coupling.hpp; how a wide patch is held: patch_moments.hpp. Where the solve mesh does not resolve the body, a mode of
-/// the system may give way too little or even pull: it is held at a tenth of the half-space's smaller compliance (coupled
+/// What contacts do to each other: contact_coupling.hpp; how a wide patch is held: patch_moments.hpp. Where the solve mesh does
+/// not resolve the body, a mode of the system may give way too little or even pull: it is held at a tenth of the half-space's smaller compliance (coupled
 /// contacts: a twentieth), continuously (held_compliance.hpp).
 
 #include <palpate/beam/cholesky.hpp>
@@ -22,6 +22,7 @@
 #include <palpate/response/held_compliance.hpp>
 
 #include <algorithm>
+#include <limits>
 
 namespace palpate::detail {
 
@@ -42,10 +43,9 @@ class ContactSystem {
 
   /// P of the first `count` contacts, all located: first by the forces alone; they give the further loads.
   void solve(std::size_t count) noexcept {
-    if (count > 1)
-      for (std::size_t i = 0; i < count; ++i) contact_[i].moments.share = 0;
-    else if (count == 1 && contact_[0].moments.share > 0)
-      widen(contact_[0]);
+    if (count > 1) loosen(count);
+    for (std::size_t i = 0; i < count; ++i)
+      if (contact_[i].moments.share > 0) widen(contact_[i]);
     solve_once(count);
     bool any = false;
     for (std::size_t i = 0; i < count; ++i) {
@@ -53,7 +53,8 @@ class ContactSystem {
       any = any || contact_[i].dipole != 0;
     }
     if (any) solve_once(count);
-    if (count == 1 && contact_[0].moments.share > 0) contact_[0].hold_moments();
+    for (std::size_t i = 0; i < count; ++i)
+      if (contact_[i].moments.share > 0) contact_[i].hold_moments();
   }
 
   void locate(Contact& c) const noexcept {
@@ -72,6 +73,7 @@ class ContactSystem {
     // Far from the surface the nearest place may jump; there w has faded away.
     const double far2 = c.place.distance2 / (size * size);
     c.share = 1 / (1 + far2 * far2);
+    c.grip = 1;
     double sum = 0;
     for (const PatchWeight& w : c.nodes) sum += w.weight;
     c.carried = 1 - c.share * (std::max)(1 - sum, 0.0);
@@ -190,6 +192,31 @@ class ContactSystem {
     if (!is_above(c.C, one_mode * c.least)) hold_above(c.C, one_mode * c.least);
     c.S = c.C.inverse();
   }
+  // A contact comes in with d = 0 where deeper ones have moved the surface by u: held there it would pull. So it grips by what it
+  // has left to do, 1 - u.d/d^2, all of it from a quarter on; and nothing while d is small against u, wherever that points. Deeper
+  // ones count, all from twice the depth on: of two alike neither lets the other go. As it comes in, the others'
+  // moments are let go (PatchMoments).
+  void loosen(std::size_t count) noexcept {
+    for (std::size_t i = 0; i < count; ++i) {
+      Contact& c = contact_[i];
+      const double d2 = c.d.squaredNorm();
+      Vec3<double> u = Vec3<double>::Zero();
+      for (std::size_t j = 0; j < count; ++j) {
+        const double deeper = contact_[j].d.squaredNorm();
+        if (!(deeper > d2)) continue;
+        u += smooth(std::sqrt(deeper / (d2 + tiny)) - 1) *
+             (coupling(*field_, c, contact_[j]) * (contact_[j].S * contact_[j].d));
+      }
+      c.grip = smooth(4 * (1 - u.dot(c.d) / (d2 + tiny))) * fading(0.01 * u.squaredNorm(), d2);
+    }
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = 0; j < count; ++j)
+        if (i != j) contact_[i].moments.share *= 1 - contact_[j].grip;
+  }
+  [[nodiscard]] static double smooth(double x) noexcept {
+    const double t = std::clamp(x, 0.0, 1.0);
+    return t * t * (3 - 2 * t);
+  }
   void widen(Contact& c) const noexcept {
     c.moments.read(*field_, c.place, c.level, c.m, c.a, c.share * c.share, stuck_load(c));
     c.C -= c.moments.taken(c.C.trace());
@@ -199,26 +226,31 @@ class ContactSystem {
     using System = SpdSystem<3 * Capacity>;
     System system{};
     const std::size_t n = 3 * count;
+    // Unknowns P / sqrt(grip): without grip a contact has no force, and the system stays symmetric.
+    std::array<double, Capacity> root;
     for (std::size_t i = 0; i < count; ++i) {
+      root[i] = std::sqrt(contact_[i].grip);
       put(system, i, i, contact_[i].C);
       for (std::size_t j = 0; j < i; ++j)
         put(system, i, j,
-            0.5 * (coupling(*field_, contact_[i], contact_[j]) +
-                   coupling(*field_, contact_[j], contact_[i]).transpose()));
+            0.5 * root[i] * root[j] *
+                (coupling(*field_, contact_[i], contact_[j]) +
+                 coupling(*field_, contact_[j], contact_[i]).transpose()));
       for (std::size_t j = 0; j < count; ++j) {
         if (i == j || contact_[j].dipole == 0) continue;
         const Vec3<double> second = second_order(*field_, contact_[i], contact_[j]);
         contact_[i].rhs -= kept(second, contact_[j]) * second;
       }
     }
-    for (std::size_t i = 0; i < n; ++i) system.b[i] = contact_[i / 3].rhs[Eigen::Index(i % 3)];
+    for (std::size_t i = 0; i < n; ++i) system.b[i] = root[i / 3] * contact_[i / 3].rhs[Eigen::Index(i % 3)];
     System test = system;
     for (std::size_t i = 0; i < n; ++i) test.at(i, i) -= coupled_mode * contact_[i / 3].least;
     if (!test.solve(n)) hold(system, n);
     const bool ok = system.solve(n);
     for (std::size_t i = 0; i < count; ++i) {
       contact_[i].P.setZero();
-      if (ok) contact_[i].P << system.b[3 * i], system.b[3 * i + 1], system.b[3 * i + 2];
+      if (ok)
+        contact_[i].P = root[i] * Vec3<double>(system.b[3 * i], system.b[3 * i + 1], system.b[3 * i + 2]);
     }
   }
   // In units of each contact's least compliance.
@@ -319,6 +351,7 @@ class ContactSystem {
 
   // Least compliance of a mode, of the half-space's.
   static constexpr double one_mode = 0.1, coupled_mode = 0.05;
+  static constexpr double tiny = (std::numeric_limits<double>::min)();
 
   const ResponseField* field_;
   Settings settings_;

@@ -274,7 +274,7 @@ class ResponseTick {
     }
   }
 
-  // The patch moves by d; beneath a ball the surface lies on it.
+  // The patch moves by d, as far as the contact grips; beneath a ball the surface lies on it.
   static void hold(const detail::PlacedContact& c, const detail::ContactNear& near, const Lane3& at,
                    Lane3& u) noexcept {
     const Lane rx = at.x - near.place.x(), ry = at.y - near.place.y(), rz = at.z - near.place.z(),
@@ -292,7 +292,7 @@ class ResponseTick {
     }
     // Over to the field outside within a fiftieth of the radius: a vertex that comes in moves fast, and does not jump.
     const Vec3<float> d = c.d.template cast<float>();
-    const Lane inside = (51.f - 50.f / near.a * r2.sqrt()).max(0.f).min(1.f);
+    const Lane inside = (51.f - 50.f / near.a * r2.sqrt()).max(0.f).min(1.f) * static_cast<float>(c.grip);
     u.x += inside * (d.x() - u.x);
     u.y += inside * (d.y() - u.y);
     u.z += inside * (d.z() - u.z);

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+#include <palpate/response/response_contact.hpp>
+
+#include "support/check.hpp"
+#include "support/response_meshes.hpp"
+
+namespace {
+using namespace palpate;
+using V = Vec3<double>;
+using Contact = ResponseContact<double>;
+
+// Cube of 60 mm, held at its base.
+const ResponseField& cube() {
+  static const ResponseField field(test::box_mesh(V(0.06, 0.06, 0.06), 8),
+                                   [](const V& p) { return p.y() <= 1e-6; },
+                                   {.E = 1e5, .nu = 0.45, .mesh = {.vertices = 180}, .threads = 1});
+  return field;
+}
+Contact pressed(double x, double radius, const V& d) {
+  return {.place = V(x, 0.06, 0.03), .normal = V::UnitY(), .radius = radius, .displacement = d};
+}
+// Force on the first contact, and displacements within both patches and elsewhere.
+struct Answer {
+  V force, second;
+  std::vector<double> u;
+  [[nodiscard]] double apart(const Answer& other, const V& d) const {
+    const double mean = force.norm() / d.norm();
+    double largest = (std::max)((force - other.force).norm(), (second - other.second).norm()) / mean;
+    for (std::size_t i = 0; i < u.size(); ++i) largest = (std::max)(largest, std::abs(u[i] - other.u[i]));
+    return largest / d.norm();
+  }
+};
+Answer answer(const Contact* contacts, std::size_t count) {
+  static const ResponseDisplay display(
+      cube(), std::vector<V>{V(0.02, 0.06, 0.03), V(0.023, 0.06, 0.031), V(0.04, 0.06, 0.03),
+                             V(0.042, 0.06, 0.029), V(0.052, 0.06, 0.03), V(0.054, 0.06, 0.029),
+                             V(0.03, 0.06, 0.05), V(0.06, 0.04, 0.03), V(0.03, 0.03, 0)});
+  ResponseTick<2> tick(cube());
+  V F[2] = {V::Zero(), V::Zero()};
+  Answer out;
+  tick.solve(contacts, count, F);
+  out.force = F[0];
+  out.second = F[1];
+  out.u.resize(3 * display.size());
+  tick.displace(display, out.u.data(), 3);
+  return out;
+}
+}  // namespace
+
+TEST_CASE(
+    "a second contact comes in where the first has moved the surface: gradually, whichever way it goes") {
+  const V d(0, -2e-3, 4e-4);
+  for (const double radius : {0.004, 0.016}) {  // narrow, and wide for its mesh
+    const Contact first = pressed(0.02, radius, d);
+    const Answer alone = answer(&first, 1);
+    for (const V& way : {V(0, -1e-3, 0), V(3e-4, -8e-4, 0), V(5e-4, 5e-4, 0)}) {
+      const auto with = [&](double part) {
+        const Contact both[2] = {first, pressed(0.036 + radius, 0.004, V(part * way))};
+        return answer(both, 2);
+      };
+      CHECK(with(1e-9).apart(alone, d) < 1e-4);  // of d, and of the force for it
+      const auto largest_step = [&](int n) {
+        double step = 0;
+        Answer before = with(0);
+        for (int i = 1; i <= n; ++i) {
+          const Answer now = with(double(i) / n);
+          step = (std::max)(step, now.apart(before, d));
+          before = now;
+        }
+        return step;
+      };
+      const double coarse = largest_step(400), fine = largest_step(1600);
+      MESSAGE("radius ", radius, ": largest step ", coarse, " of 400, ", fine, " of 1600");
+      CHECK(fine < 0.3 * coarse);  // a quarter; a jump would stay
+    }
+  }
+}
+
+TEST_CASE("contacts that are alike hold each other as ever") {
+  const V d(0, -1e-3, 0);
+  const Contact both[2] = {pressed(0.02, 0.004, d), pressed(0.0201, 0.004, d)};
+  const Answer one = answer(both, 1), two = answer(both, 2);
+  // At one place they share one contact's force, less the share of the mean over two patches instead of one.
+  CHECK((two.force - two.second).norm() < 0.1 * two.force.norm());
+  CHECK((two.force + two.second).norm() > 0.9 * one.force.norm());
+}
