@@ -43,7 +43,8 @@ class ContactSystem {
 
   /// P of the first `count` contacts, all located: first by the forces alone; they give the further loads.
   void solve(std::size_t count) noexcept {
-    if (count > 1) loosen(count);
+    if constexpr (Capacity > 1)
+      if (count > 1) loosen(count);
     for (std::size_t i = 0; i < count; ++i)
       if (contact_[i].moments.share > 0) widen(contact_[i]);
     solve_once(count);
@@ -343,10 +344,9 @@ class ContactSystem {
     c.extra = c.S * (kept(twice, c) * kept_of_force(twice, c) * stiffer);
   }
   void solve_once(std::size_t count) noexcept {
-    if (count == 1)
-      contact_[0].P = contact_[0].S * contact_[0].rhs;
-    else if (count > 1)
-      solve_coupled(count);
+    if constexpr (Capacity > 1)
+      if (count > 1) return solve_coupled(count);
+    if (count == 1) contact_[0].P = contact_[0].S * contact_[0].rhs;
   }
 
   // Least compliance of a mode, of the half-space's.
