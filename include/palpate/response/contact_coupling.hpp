@@ -29,8 +29,8 @@ struct PlacedContact {
   double carried = 1;                           ///< of the force, not by what is held
   double share = 1;                             ///< of w that counts
   double grip = 1;  ///< 0: let go, for others have moved its patch as far as it would (ContactSystem::loosen)
-  PatchTable::Level level;                      ///< of the radius
-  Mat3<double> w, C, S;                         ///< correction, sum, times mu; the sum's inverse
+  PatchTable::Level level;  ///< of the radius
+  Mat3<double> w, C, S;     ///< correction, sum, times mu; the sum's inverse
   Vec3<double> rhs;
   Vec3<double> P = Vec3<double>::Zero();      ///< force / mu
   Vec3<double> extra = Vec3<double>::Zero();  ///< force / mu that the tool feels and the field does not
@@ -41,6 +41,12 @@ struct PlacedContact {
   double sag = 0;                  ///< how deep the patch's edge lies below its plane, at most
   PatchMoments moments;            ///< of a wide patch
   Moments held = Moments::Zero();  ///< its loads / mu
+  Vec3<double> bent =
+      Vec3<double>::Zero();  ///< by the other contacts beneath it: spread, slopes along t1, t2
+
+  /// Tangents of the patch.
+  [[nodiscard]] Vec3<double> t1() const noexcept { return perpendicular(Vec3<double>(-m)); }
+  [[nodiscard]] Vec3<double> t2() const noexcept { return t1().cross(m); }
 
   void hold_moments() noexcept { held = -moments.give * (moments.G * P + moments.of_loads(dipole, tilt)); }
 };
@@ -73,12 +79,12 @@ void each_moment(const ResponseField& field, const PlacedContact& c, const Each&
   });
 }
 
-/// Double force and tilts as node k has them.
-[[nodiscard]] inline Vec3<double> second_loads(const ResponseField& field, const PlacedContact& c,
-                                               std::uint32_t k) noexcept {
+/// A double force and a tilt as node k has them.
+[[nodiscard]] inline Vec3<double> loads_of_node(const ResponseField& field, std::uint32_t k, double dipole,
+                                                const Vec3<double>& tilt) noexcept {
   const Vec3<double>& n = field.touch().nodes()[k].normal;
   const Vec3<double> t1 = perpendicular(n);
-  return {c.dipole, c.tilt.dot(t1), c.tilt.dot(n.cross(t1))};
+  return {dipole, tilt.dot(t1), tilt.dot(n.cross(t1))};
 }
 
 /// Near field at r from contact j of unit forces on a disc of radius a, times mu [1/m].
@@ -109,22 +115,30 @@ void each_moment(const ResponseField& field, const PlacedContact& c, const Each&
     }
   return out;
 }
-/// Displacement of patch i by contact j's loads of second order.
-[[nodiscard]] inline Vec3<double> second_order(const ResponseField& field, const PlacedContact& ci,
-                                               const PlacedContact& cj) noexcept {
-  const double nu = field.nu(), a = std::hypot(ci.a, cj.a);
+/// Mean displacement of patch i by contact j's unit loads: radial double force, tilts along its t1 and t2 [1/m^2]. Its
+/// transpose is what unit forces on patch i do beneath patch j: spread, slopes along t1 and t2 (reciprocity).
+[[nodiscard]] inline Mat3<double> coupling_of_moments(const ResponseField& field, const PlacedContact& ci,
+                                                      const PlacedContact& cj) noexcept {
+  const double nu = field.nu(), a = std::hypot(ci.a, cj.a),
+               near = ci.carried * cj.carried / (4 * std::numbers::pi);
   const Vec3<double> r = ci.x - cj.x, p = tangential(r, cj.m);
   const Disc<double> disc(p.squaredNorm(), edge_depth(r, cj.m, a, cj.sag), a);
-  const auto d = disc.double_force(nu), t = disc.tilt(cj.tilt.dot(p), nu);
-  Vec3<double> out = ((cj.dipole * d.in_plane + t.in_plane) * p + (cj.dipole * d.normal + t.normal) * cj.m +
-                      t.along * cj.tilt) /
-                     (4 * std::numbers::pi);
-  out *= ci.carried * cj.carried;
+  const auto d = disc.double_force(nu);
+  const std::array<Vec3<double>, 3> tilt{Vec3<double>::Zero(), cj.t1(), cj.t2()};
+  Mat3<double> out;
+  out.col(0) = near * (d.in_plane * p + d.normal * cj.m);
+  for (std::size_t l = 1; l < 3; ++l) {
+    const auto t = disc.tilt(tilt[l].dot(p), nu);
+    out.col(Eigen::Index(l)) = near * (t.in_plane * p + t.normal * cj.m + t.along * tilt[l]);
+  }
   for (const PatchWeight& j : cj.nodes) {
-    const Vec3<double> load = ci.share * cj.share * j.weight * second_loads(field, cj, j.node);
+    Mat3<double> mean = Mat3<double>::Zero();
     for (const PatchWeight& i : ci.nodes)
       for (std::size_t l = 0; l < 3; ++l)
-        out += i.weight * load[Eigen::Index(l)] * field.at(i.node, j.node, 3 + l);
+        mean.col(Eigen::Index(l)) += i.weight * field.at(i.node, j.node, 3 + l);
+    for (std::size_t l = 0; l < 3; ++l)
+      out.col(Eigen::Index(l)) +=
+          ci.share * cj.share * j.weight * mean * loads_of_node(field, j.node, l == 0 ? 1 : 0, tilt[l]);
   }
   return out;
 }

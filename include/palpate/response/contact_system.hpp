@@ -48,6 +48,8 @@ class ContactSystem {
     for (std::size_t i = 0; i < count; ++i)
       if (contact_[i].moments.share > 0) widen(contact_[i]);
     solve_once(count);
+    if constexpr (Capacity > 1)
+      if (count > 1) bend(count);
     bool any = false;
     for (std::size_t i = 0; i < count; ++i) {
       press(contact_[i]);
@@ -65,6 +67,7 @@ class ContactSystem {
     c.push.setZero();
     c.held.setZero();
     c.extra.setZero();
+    c.bent.setZero();
     c.place = field_->touch().locate(c.x);
     c.nodes.clear();
     add_place(c.nodes, c.place, 1);
@@ -218,6 +221,16 @@ class ContactSystem {
     const double t = std::clamp(x, 0.0, 1.0);
     return t * t * (3 - 2 * t);
   }
+  // What the forces do beneath the other contacts' patches.
+  void bend(std::size_t count) noexcept {
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = 0; j < count; ++j) {
+        if (i == j) continue;
+        Mat3<double>& by = by_moments_[i * Capacity + j];
+        by = coupling_of_moments(*field_, contact_[i], contact_[j]);
+        contact_[j].bent += by.transpose() * contact_[i].P;
+      }
+  }
   void widen(Contact& c) const noexcept {
     c.moments.read(*field_, c.place, c.level, c.m, c.a, c.share * c.share, stuck_load(c));
     c.C -= c.moments.taken(c.C.trace());
@@ -239,7 +252,9 @@ class ContactSystem {
                  coupling(*field_, contact_[j], contact_[i]).transpose()));
       for (std::size_t j = 0; j < count; ++j) {
         if (i == j || contact_[j].dipole == 0) continue;
-        const Vec3<double> second = second_order(*field_, contact_[i], contact_[j]);
+        const Contact& cj = contact_[j];
+        const Vec3<double> second = by_moments_[i * Capacity + j] *
+                                    Vec3<double>(cj.dipole, cj.tilt.dot(cj.t1()), cj.tilt.dot(cj.t2()));
         contact_[i].rhs -= kept(second, contact_[j]) * second;
       }
     }
@@ -284,13 +299,15 @@ class ContactSystem {
     return c.a * (1 - 2 * field_->nu()) / (std::numbers::pi * (1 - field_->nu()));
   }
   // Loads of a solved contact beside its force. Linear: for nu < 1/2 a disc under a force spreads and turns by itself; stuck, it
-  // is kept from it, in the mean that the loads' energy knows.
+  // is kept from it, in the mean that the loads' energy knows. And what spreads and turns the surface beneath the patch is held
+  // back by the half-space's loads for that, as far as PatchMoments does not: a narrow one's moments of w are w's slopes.
   // Second order: the load has moved with the tool; far away that is the moment of the force F by the way d. Near by, a
   // factor of d_n is the local indentation delta_n = C_near P, which is less where the body as a whole gives way.
   void press(Contact& c) const noexcept {
     const SecondOrder& k = settings_.constants;
     const double nu = field_->nu(), stuck = stuck_load(c);
     const DiscCompliance near = disc_compliance(c.a, nu);
+    const Vec3<double> t1 = c.t1(), t2 = c.t2();
     const double depth = c.d.dot(c.m), held = std::clamp(depth, -2 * c.a, 2 * c.a);
     const Vec3<double> dt = c.d - depth * c.m;
     // No force above the half-space's for d: where the body is far stiffer, the series in depth has nothing to say.
@@ -300,7 +317,7 @@ class ContactSystem {
     const Vec3<double> P = length > most ? Vec3<double>(most / length * c.P) : c.P;
     const double pushed = P.dot(c.m), indented = near.normal * pushed;
     const Vec3<double> dragged = P - pushed * c.m;
-    // Rows: w at the patch by a unit double force; by a unit tilt along each axis.
+    // w at the patch by a unit double force; rows: by a unit tilt along each axis.
     Vec3<double> radial = Vec3<double>::Zero();
     Mat3<double> tilting = Mat3<double>::Zero();
     for (std::size_t i = 0; i < 3; ++i) {
@@ -308,12 +325,16 @@ class ContactSystem {
       const Mat3<double> mean =
           c.share * c.share * c.place.weight[Eigen::Index(i)] * field_->table().second(node, c.level);
       const Vec3<double>& n = field_->touch().nodes()[node].normal;
-      const Vec3<double> t1 = perpendicular(n);
+      const Vec3<double> n1 = perpendicular(n);
       radial += mean.col(0);
-      tilting += t1 * mean.col(1).transpose() + n.cross(t1) * mean.col(2).transpose();
+      tilting += n1 * mean.col(1).transpose() + n.cross(n1) * mean.col(2).transpose();
     }
-    c.dipole = stuck * pushed;
-    c.tilt = -0.5 * stuck * dragged;
+    const double stiff =
+        (1 - c.moments.share) * 8 * c.a * c.a * c.a / (3 * (1 - nu));  // 1 / D_near of a tilt
+    const Vec3<double> slope = tilting * P;
+    c.dipole = stuck * pushed - 2 * stiff * (radial.dot(P) + c.bent[0]);
+    c.tilt = -0.5 * stuck * dragged -
+             stiff * ((slope.dot(t1) + c.bent[1]) * t1 + (slope.dot(t2) + c.bent[2]) * t2);
     const auto moved = [&](double pull, const Vec3<double>& turn) {
       Vec3<double> u = pull * radial + tilting.transpose() * turn;
       if (c.moments.share > 0) u -= c.moments.G.transpose() * c.moments.give * c.moments.of_loads(pull, turn);
@@ -328,7 +349,9 @@ class ContactSystem {
     const double dipole = -outward() * pushed * held;
     c.dn2 = indented * held;
     c.turn = k.slide * pushed * dt - held * dragged;
-    c.push = near.along * k.drag * indented * dt - near.normal * k.softening * c.dn2 * c.m;
+    const double steep = indented / c.a;
+    c.push = near.along * near.along * k.drag / (1 + steep * steep) * indented * dragged -
+             near.normal * k.softening * c.dn2 * c.m;
     const Vec3<double> second = c.push - moved(dipole, c.turn);
     const double share = kept(second, c) * kept_of_force(second, c);
     c.dn2 *= share;
@@ -356,6 +379,7 @@ class ContactSystem {
   const ResponseField* field_;
   Settings settings_;
   std::array<Contact, Capacity> contact_{};
+  std::array<Mat3<double>, Capacity == 1 ? 0 : Capacity * Capacity> by_moments_{};  // of j at i
 };
 
 }  // namespace palpate::detail

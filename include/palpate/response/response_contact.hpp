@@ -208,7 +208,8 @@ class ResponseTick {
     Eigen::Map<Eigen::ArrayXf> second(second_.data(), size);
     second.setZero();
     for (auto node : patch_) {
-      const Vec3<float> g = weight_[node] * detail::second_loads(*field_, c, node).template cast<float>();
+      const Vec3<float> g =
+          weight_[node] * detail::loads_of_node(*field_, node, c.dipole, c.tilt).template cast<float>();
       const auto column = [&](std::size_t l) { return Row(field_->column(node, l), size); };
       if (c.tilt.squaredNorm() > 0)
         second += g[0] * column(3) + g[1] * column(4) + g[2] * column(5);
