@@ -330,7 +330,7 @@ class ContactSystem {
       tilting += n1 * mean.col(1).transpose() + n.cross(n1) * mean.col(2).transpose();
     }
     const double stiff =
-        (1 - c.moments.share) * 8 * c.a * c.a * c.a / (3 * (1 - nu));  // 1 / D_near of a tilt
+        c.grip * (1 - c.moments.share) * 8 * c.a * c.a * c.a / (3 * (1 - nu));  // 1 / D_near of a tilt
     const Vec3<double> slope = tilting * P;
     c.dipole = stuck * pushed - 2 * stiff * (radial.dot(P) + c.bent[0]);
     c.tilt = -0.5 * stuck * dragged -

@@ -84,3 +84,37 @@ TEST_CASE("contacts that are alike hold each other as ever") {
   CHECK((two.force - two.second).norm() < 0.1 * two.force.norm());
   CHECK((two.force + two.second).norm() > 0.9 * one.force.norm());
 }
+
+TEST_CASE(
+    "what a force does beneath another patch: the same by the patch's loads as by the field, by "
+    "reciprocity") {
+  detail::ContactSystem<2> system(cube(), {.second_order = false});
+  const Contact contacts[2] = {pressed(0.015, 0.003, V(2e-4, -1e-3, 1e-4)),
+                               pressed(0.04, 0.003, V(0, -1e-3, 0))};
+  for (std::size_t i = 0; i < 2; ++i) {
+    system[i].x = contacts[i].place;
+    system[i].m = -contacts[i].normal;
+    system[i].d = contacts[i].displacement;
+    system[i].a = contacts[i].radius;
+    system.locate(system[i]);
+  }
+  system.solve(1);
+  const detail::PlacedContact& c = system[1];
+  const V bent = detail::coupling_of_moments(cube(), system[0], c).transpose() * system[0].P;
+  const double step = 0.5 * cube().mesh().length;  // over which the loads' columns are slopes
+  std::vector<V> points;
+  for (const V& t : {c.t1(), c.t2()})
+    for (const double side : {-step, step}) points.push_back(c.x + side * t);
+  ResponseTick<1> tick(cube(), {.second_order = false});
+  V F;
+  tick.solve(contacts, 1, &F);
+  std::vector<double> u(12);
+  tick.displace(ResponseDisplay(cube(), points), u.data(), 3);
+  const auto slope = [&](std::size_t t) {
+    const double* low = &u[6 * t];
+    return V((V(low[3], low[4], low[5]) - V(low[0], low[1], low[2])) / (2 * step));
+  };
+  const V seen(0.5 * (slope(0).dot(c.t1()) + slope(1).dot(c.t2())), slope(0).dot(c.m), slope(1).dot(c.m));
+  MESSAGE("spread and slopes: by the loads ", bent.transpose(), ", seen ", seen.transpose());
+  CHECK((bent - seen).norm() < 0.15 * seen.norm());
+}
