@@ -309,7 +309,6 @@ class ContactSystem {
     const DiscCompliance near = disc_compliance(c.a, nu);
     const Vec3<double> t1 = c.t1(), t2 = c.t2();
     const double depth = c.d.dot(c.m), held = std::clamp(depth, -2 * c.a, 2 * c.a);
-    const Vec3<double> dt = c.d - depth * c.m;
     // No force above the half-space's for d: where the body is far stiffer, the series in depth has nothing to say.
     const double normal = c.P.dot(c.m);
     const Vec3<double> indentation = near.along * c.P + (near.normal - near.along) * normal * c.m;
@@ -348,7 +347,10 @@ class ContactSystem {
     if (!settings_.second_order) return;
     const double dipole = -outward() * pushed * held;
     c.dn2 = indented * held;
-    c.turn = k.slide * pushed * dt - held * dragged;
+    // What w does at the place: along the normal and the surface; and its slope along the normal.
+    const Vec3<double> gone = c.w * P, slid = tangential(gone, c.m), leaning = tangential(slope, c.m);
+    const double sunk = gone.dot(c.m);
+    c.turn = k.turn * (pushed * slid - sunk * dragged);
     const double steep = indented / c.a;
     c.push = near.along * near.along * k.drag / (1 + steep * steep) * indented * dragged -
              near.normal * k.softening * c.dn2 * c.m;
@@ -360,9 +362,13 @@ class ContactSystem {
     c.dipole += share * dipole;
     c.tilt += c.turn;
     c.rhs += share * second;
-    // The energy of third degree in P is -D e, with e the surface's strain by w under the patch (by reciprocity radial . P) and
-    // D = -outward delta_n P_n. D as a load is its derivative by e; that by P_n, twice as much, is felt by the tool only.
-    const Vec3<double> stiffer = 2 * outward() * indented * radial.dot(P) * c.m;
+    // Two energies of third degree in P, of which the loads above are the derivatives by w's gradient; those by P are felt by the
+    // tool only. D e: e is the surface's strain by w under the patch (by reciprocity radial . P), D = -outward delta_n P_n; that by
+    // P_n is 2 D e / P_n. lever (P_n w_t - w_n P_t) . s, s the slope of w_n: a body that bends or turns beneath the patch moves it
+    // sideways, too.
+    const Vec3<double> stiffer = 2 * outward() * indented * radial.dot(P) * c.m -
+                                 k.lever * (slid.dot(leaning) * c.m + pushed * (c.w * leaning) -
+                                            sunk * leaning - dragged.dot(leaning) * (c.w * c.m));
     const Vec3<double> twice = 2 * stiffer;  // so that it is at most a quarter of d, and of the force
     c.extra = c.S * (kept(twice, c) * kept_of_force(twice, c) * stiffer);
   }

@@ -39,23 +39,25 @@ struct SphereContact {
 };
 
 /// Constants of second order in depth, for a stuck patch on neo-Hookean rubber; depth <= 2 a. They are those of nu = 1/2;
-/// `at(nu)` is what is used, below 0.3 that of 0.3. Fitted at nu = 0.49 on a normal and a skew push on a cube and two
-/// ellipsoids, their change with nu on one normal and one skew push at 0.3, rounded, used for every body
-/// (docs/accuracy.md).
-/// delta_n, delta_t: local indentation, the displacement of a half-space by the same force, normal and tangential. Without constants: the radial
-/// double force -nu / (1 - nu) F_n d_n and the moment of tilt -F_t d_n, by which the load has moved, and the force by which a
-/// body that spreads under the patch stiffens.
+/// `at(nu)` is what is used, below 0.3 that of 0.3. Fitted at nu = 0.49 on pushes into a cube, a block, a wall and two ellipsoids, their
+/// change with nu on one normal and one skew push at 0.3, rounded, used for every body (docs/accuracy.md).
+/// delta_n, delta_t: local indentation, the displacement of a half-space by the same force, normal and tangential; w_n, w_t: the rest,
+/// by which the body as a whole gives way; s: slope of w_n under the patch. Without constants: the radial double force
+/// -nu / (1 - nu) F_n d_n, and the force by which a body that spreads under the patch stiffens.
 struct SecondOrder {
   double radial = 0.19;  ///< near term along the surface, times delta_n d_n / a; times (2 nu)^3
   double sink = 0.36;    ///< near term along the normal, likewise; the same for every nu
-  double slide = 0.7;    ///< moment of tilt slide F_n d_t; the same for every nu
+  double turn = 0.6;     ///< moment of tilt turn (F_n w_t - F_t w_n); the same for every nu
+  double lever =
+      0.35;  ///< energy lever (F_n w_t - F_t w_n) . s, whose forces the tool feels; the same for every nu
   double drag =
       1.2;  ///< tangential force drag mu delta_n delta_t / (1 + (delta_n / a)^2); times 1 + 1.3 b, b = 1 - 2 nu
   double softening = 0.36;  ///< normal force -softening mu delta_n d_n; times 1 - 2.5 b
 
   [[nodiscard]] SecondOrder at(double nu) const noexcept {
     const double held = nu > 0.3 ? nu : 0.3, b = 1 - 2 * held;
-    return {8 * held * held * held * radial, sink, slide, (1 + 1.3 * b) * drag, (1 - 2.5 * b) * softening};
+    return {8 * held * held * held * radial, sink, turn, lever, (1 + 1.3 * b) * drag,
+            (1 - 2.5 * b) * softening};
   }
 };
 
