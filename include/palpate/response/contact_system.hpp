@@ -330,10 +330,10 @@ class ContactSystem {
     }
     const double stiff =
         c.grip * (1 - c.moments.share) * 8 * c.a * c.a * c.a / (3 * (1 - nu));  // 1 / D_near of a tilt
-    const Vec3<double> slope = tilting * P;
+    const Vec3<double> slope = tilting * P,
+                       leaning = (slope.dot(t1) + c.bent[1]) * t1 + (slope.dot(t2) + c.bent[2]) * t2;
     c.dipole = stuck * pushed - 2 * stiff * (radial.dot(P) + c.bent[0]);
-    c.tilt = -0.5 * stuck * dragged -
-             stiff * ((slope.dot(t1) + c.bent[1]) * t1 + (slope.dot(t2) + c.bent[2]) * t2);
+    c.tilt = -0.5 * stuck * dragged - stiff * leaning;
     const auto moved = [&](double pull, const Vec3<double>& turn) {
       Vec3<double> u = pull * radial + tilting.transpose() * turn;
       if (c.moments.share > 0) u -= c.moments.G.transpose() * c.moments.give * c.moments.of_loads(pull, turn);
@@ -347,8 +347,9 @@ class ContactSystem {
     if (!settings_.second_order) return;
     const double dipole = -outward() * pushed * held;
     c.dn2 = indented * held;
-    // What w does at the place: along the normal and the surface; and its slope along the normal.
-    const Vec3<double> gone = c.w * P, slid = tangential(gone, c.m), leaning = tangential(slope, c.m);
+    // By how much the body as a whole gives way, along the normal and the surface.
+    const Vec3<double> gone = c.d - near.along * P - (near.normal - near.along) * pushed * c.m,
+                       slid = tangential(gone, c.m);
     const double sunk = gone.dot(c.m);
     c.turn = k.turn * (pushed * slid - sunk * dragged);
     const double steep = indented / c.a;
