@@ -84,21 +84,29 @@ TEST_CASE("field: patch moves by d, held vertices rest, reciprocity, forces of t
 
 TEST_CASE("near field of second order: the patch moves as one, no jump at its edge or below its axis") {
   const ResponseField field = ellipsoid(0.5, 60);  // nu = 1/2: the disc's own field is uniform within
-  detail::ContactSystem<1> contacts(field, {});
-  auto& c = contacts[0];
+  detail::ContactSystem<1> contacts[2] = {{field, {}}, {field, {.second_order = false}}};
   const double a = 0.005;
-  c.x = V(0.004, 0.0399, 0);
-  c.m = -V::UnitY();
-  c.d = V(0.0015, -0.004, 0);
-  c.a = a;
-  contacts.locate(c);
-  contacts.solve(1);
-  const detail::ContactNear near = contacts.near_of(c);
+  for (auto& system : contacts) {
+    auto& c = system[0];
+    c.x = V(0.004, 0.0399, 0);
+    c.m = -V::UnitY();
+    c.d = V(0.0015, -0.004, 0);
+    c.a = a;
+    system.locate(c);
+    system.solve(1);
+  }
+  const auto& c = contacts[0][0];
+  const detail::ContactNear both[2] = {contacts[0].near_of(c), contacts[1].near_of(contacts[1][0])};
+  // What second order adds: to first order the near field undoes the slopes of w.
   const auto at = [&](double along, double down) {
     const V x = c.x + a * along * V(0.8, 0, 0.6) + a * down * c.m;
     const auto lane = [](double value) { return detail::Lane(detail::Lane::Constant(static_cast<float>(value))); };
-    const detail::Lane3 u = near({lane(x.x()), lane(x.y()), lane(x.z())});
-    return V(double(u.x[0]), double(u.y[0]), double(u.z[0]));
+    V u = V::Zero();
+    for (int order = 0; order < 2; ++order) {
+      const detail::Lane3 part = both[order]({lane(x.x()), lane(x.y()), lane(x.z())});
+      u += (order == 0 ? 1 : -1) * V(double(part.x[0]), double(part.y[0]), double(part.z[0]));
+    }
+    return u;
   };
   for (double s : {0.3, 0.7, 0.999}) CHECK((at(s, 0) - at(0, 0)).norm() < 1e-4 * c.d.norm());  // float, the disc's arctangent: 1e-5
   // Beyond the edge as sqrt(s - 1): 2e-3 of d. When the terms of second order began there: half of d.
