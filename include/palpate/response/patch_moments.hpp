@@ -15,9 +15,10 @@
 /// | G, W   | moments of w over the patch by unit forces and by unit moments, times mu  | 1/m^2, 1/m^3 |
 /// | D_near | the half-space's: 3 (1-nu)/(16 a^3), 3 (2-nu)/(32 a^3), 3 (1-nu)/(8 a^3)  | 1/m^3 |
 ///
-/// A patch of less than an edge of the solve mesh has none of it, one of one and a half edges all; in between a share. The more of a
-/// patch lies on what is held the less: from half on none. Of one contact alone, gradually (ContactSystem::loosen): what several
-/// do to each other's moments is not known, and without it they come out worse than held in the mean. Nothing is fitted. docs/accuracy.md.
+/// A patch of less than an edge of the solve mesh has none of it, one of one and a half edges all; in between a share; the rest is
+/// held by the slopes of w (ContactSystem::press). The more of a patch lies on what is held the less: from half on none. Of one contact
+/// alone, gradually (ContactSystem::loosen): of what several do to each other's moments only the slopes are known. Nothing is fitted.
+/// docs/accuracy.md.
 
 #include <palpate/response/contact_near.hpp>
 #include <palpate/response/held_compliance.hpp>
