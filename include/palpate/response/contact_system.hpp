@@ -328,8 +328,10 @@ class ContactSystem {
       radial += mean.col(0);
       tilting += n1 * mean.col(1).transpose() + n.cross(n1) * mean.col(2).transpose();
     }
-    const double stiff =
-        c.grip * (1 - c.moments.share) * 8 * c.a * c.a * c.a / (3 * (1 - nu));  // 1 / D_near of a tilt
+    // 1 / D_near of a tilt. What is held takes less than all of a compliance: held to half where a patch is wide for a thin part.
+    double stiff = c.grip * (1 - c.moments.share) * 8 * c.a * c.a * c.a / (3 * (1 - nu));
+    const double taken = stiff * (2 * radial.squaredNorm() + tilting.squaredNorm()), whole = c.C.trace();
+    stiff *= fading(taken * taken, 0.25 * whole * whole);
     const Vec3<double> slope = tilting * P,
                        leaning = (slope.dot(t1) + c.bent[1]) * t1 + (slope.dot(t2) + c.bent[2]) * t2;
     c.dipole = stuck * pushed - 2 * stiff * (radial.dot(P) + c.bent[0]);
