@@ -22,7 +22,7 @@ void run(const Output& out, const char* name, const Object& object, const MeshDa
   Shape shape(mesh, draw == Draw::normals);
   const auto poses = sliding<double>(0.04, 2e-3);
   const auto period = std::chrono::nanoseconds(1000000000 / rate);
-  const auto duration = std::chrono::milliseconds(out.quick ? 300 : 5000);
+  const auto duration = std::chrono::milliseconds(5000);
   TimeHistogram periods;
   std::uint64_t missed = 0, ticks = 0;
   double force = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Triangle meshes as elastic objects, from 1,000 to 1,000,000 triangles: `bench_mesh OUTPUT.csv [--quick]`.
+/// @file  Triangle meshes as elastic objects, from 1,000 to 1,000,000 triangles: `bench_mesh OUTPUT.csv`.
 /// A ball of 1,000 points and 20 mm radius glides 2 mm deep over a dented body of about 20 cm, 50 um a tick.
 /// Columns: set-up, refit of the tree after 1 in 100 vertices moved and after all did, one closest point from within 5 mm
 /// of the surface, the force tick on the mesh itself and on its samples, how many points touch, and the force of both.
@@ -8,7 +8,6 @@
 #include "mesh_scene.hpp"
 
 #include <cstdio>
-#include <cstring>
 #include <random>
 #include <vector>
 
@@ -38,11 +37,10 @@ Ticks glide(const Object& object, const MeshSurface<S>& body, int ticks) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2 || argc > 3 || (argc == 3 && std::strcmp(argv[2], "--quick") != 0)) {
-    std::fprintf(stderr, "usage: bench_mesh OUTPUT.csv [--quick]\n");
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: bench_mesh OUTPUT.csv\n");
     return 2;
   }
-  const bool quick = argc == 3;
   std::FILE* out = std::fopen(argv[1], "w");
   if (!out) {
     std::perror(argv[1]);
@@ -55,7 +53,6 @@ int main(int argc, char** argv) {
   std::fprintf(out, "%s\n", head);
   std::printf("%s\n", head);
   for (const std::size_t size : {1000u, 4000u, 10000u, 40000u, 100000u, 400000u, 1000000u}) {
-    if (quick && size > 100000) break;
     const MeshData<S> mesh = body_mesh(size);
     const TriangleMesh<S> checked(mesh);
     auto start = Clock::now();
@@ -73,7 +70,7 @@ int main(int argc, char** argv) {
     for (const std::uint32_t v : which) places.push_back(all[v] * 0.99);
     for (V& v : all) v *= 0.99;
     std::vector<double> part, whole;
-    for (int i = 0; i < (quick ? 5 : 20); ++i) {
+    for (int i = 0; i < 20; ++i) {
       start = Clock::now();
       tree.move(which, places);
       part.push_back(since(start));
@@ -85,7 +82,7 @@ int main(int argc, char** argv) {
     std::mt19937_64 random(1);
     std::uniform_real_distribution<S> unit(-1, 1);
     std::vector<V> queries;
-    for (int i = 0; i < (quick ? 5000 : 20000); ++i) {
+    for (int i = 0; i < 20000; ++i) {
       const auto& t = mesh.triangles[random() % mesh.triangles.size()];
       queries.push_back(mesh.vertices[t[0]] + 5e-3 * V(unit(random), unit(random), unit(random)));
     }
@@ -94,7 +91,7 @@ int main(int argc, char** argv) {
     for (const V& x : queries) sum += body.closest(x).distance;
     const double query = since(start) * 1000 / static_cast<double>(queries.size());
 
-    const int ticks = quick ? 1000 : 10000;
+    const int ticks = 10000;
     const Ticks own = glide(body, body, ticks);
     start = Clock::now();
     const SampledSurface<MeshSurface<S>> samples(body, {.spacing = 2e-3});

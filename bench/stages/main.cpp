@@ -31,7 +31,7 @@ double median_us(std::size_t ticks, int repeats, const Work& work) {
 
 int main(int argc, char** argv) {
   const Output out(argc, argv, "stage,time_us,share");
-  const std::size_t ticks = out.quick ? 1000 : 10000;
+  const std::size_t ticks = 10000;
   const auto mesh = ellipsoid<float>().mesh(20000);
   Shape shape(mesh, true), bare(mesh, false);
   const auto& interpolation = bare.model().field().interpolation();
