@@ -87,12 +87,19 @@ void each_moment(const ResponseField& field, const PlacedContact& c, const Each&
   return {dipole, tilt.dot(t1), tilt.dot(n.cross(t1))};
 }
 
+/// The disc of radius a that stands for a mean over a patch, seen at r from contact j, p along it. Such a mean has no edge at a,
+/// where a disc's own field has an infinite slope: it is taken a twentieth of a deeper.
+[[nodiscard]] inline Disc<double> mean_disc(const PlacedContact& cj, const Vec3<double>& r,
+                                            const Vec3<double>& p, double a) noexcept {
+  return {p.squaredNorm(), std::hypot(edge_depth(r, cj.m, a, cj.sag), 0.05 * a), a};
+}
+
 /// Near field at r from contact j of unit forces on a disc of radius a, times mu [1/m].
 [[nodiscard]] inline Mat3<double> near_of_forces(const PlacedContact& cj, const Vec3<double>& r, double a,
                                                  double nu) noexcept {
   constexpr double scale = 1 / (4 * std::numbers::pi);
   const Vec3<double> p = tangential(r, cj.m);
-  const Disc<double> disc(p.squaredNorm(), edge_depth(r, cj.m, a, cj.sag), a);
+  const Disc<double> disc = mean_disc(cj, r, p, a);
   Mat3<double> out;
   for (int l = 0; l < 3; ++l) {
     const double fn = cj.m[l];
@@ -122,7 +129,7 @@ void each_moment(const ResponseField& field, const PlacedContact& c, const Each&
   const double nu = field.nu(), a = std::hypot(ci.a, cj.a),
                near = ci.carried * cj.carried / (4 * std::numbers::pi);
   const Vec3<double> r = ci.x - cj.x, p = tangential(r, cj.m);
-  const Disc<double> disc(p.squaredNorm(), edge_depth(r, cj.m, a, cj.sag), a);
+  const Disc<double> disc = mean_disc(cj, r, p, a);
   const auto d = disc.double_force(nu);
   const std::array<Vec3<double>, 3> tilt{Vec3<double>::Zero(), cj.t1(), cj.t2()};
   Mat3<double> out;

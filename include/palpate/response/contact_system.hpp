@@ -11,12 +11,15 @@
 /// | w      | the body's correction, times mu                                          | 1/m    |
 /// | q, w_2 | second order in depth (SecondOrder): universal forces, the body's answer | m^2, m |
 ///
-/// What contacts do to each other: contact_coupling.hpp; how a wide patch is held: patch_moments.hpp. Where the solve mesh does
-/// not resolve the body, a mode of the system may give way too little or even pull: it is held at a tenth of the half-space's smaller compliance (coupled
-/// contacts: a twentieth), continuously (held_compliance.hpp).
+/// Loads beside the force: contact_loads.hpp. What contacts do to each other: contact_coupling.hpp. How a wide patch is held:
+/// patch_moments.hpp. Where the solve mesh does not resolve the body, a mode of the system may give way too little or even pull: it
+/// is held at a tenth of the half-space's smaller compliance (coupled contacts: a twentieth, and a 10,000th of all compliance, to
+/// which no mesh knows it: on a plate that bends easily two contacts would else throw each other out), continuously
+/// (held_compliance.hpp).
 
 #include <palpate/beam/cholesky.hpp>
 #include <palpate/response/contact_coupling.hpp>
+#include <palpate/response/contact_loads.hpp>
 #include <palpate/response/contact_near.hpp>
 #include <palpate/response/contact_types.hpp>
 #include <palpate/response/held_compliance.hpp>
@@ -52,7 +55,7 @@ class ContactSystem {
       if (count > 1) bend(count);
     bool any = false;
     for (std::size_t i = 0; i < count; ++i) {
-      press(contact_[i]);
+      press(*field_, settings_.second_order ? &settings_.constants : nullptr, contact_[i]);
       any = any || contact_[i].dipole != 0;
     }
     if (any) solve_once(count);
@@ -93,13 +96,6 @@ class ContactSystem {
     c.rhs = c.d;
   }
 
-  // More than half of d, or of the force: the series in depth has ended there.
-  [[nodiscard]] static double kept(const Vec3<double>& second, const Contact& c) noexcept {
-    return fading(second.squaredNorm(), 0.25 * c.d.squaredNorm());
-  }
-  [[nodiscard]] static double kept_of_force(const Vec3<double>& second, const Contact& c) noexcept {
-    return fading((c.S * second).squaredNorm(), 0.25 * c.P.squaredNorm());
-  }
   // s^2 of patch_table.hpp.
   [[nodiscard]] static double averaged(const Contact& c, double size) noexcept {
     return c.a * c.a - 0.25 * size * size;
@@ -158,7 +154,7 @@ class ContactSystem {
     // At the rim the double force's disc moves -dipole (2 - 2 nu) 3 / (32 a^2); the near term takes it back. (At nu = 0 there
     // is nothing to take back.)
     const double per_depth = 1 / (c.a * disc_compliance(c.a, nu).normal);
-    const double moved = (std::max)(outward(), 0.01) * per_depth * (2 - 2 * nu);
+    const double moved = (std::max)(outward(nu), 0.01) * per_depth * (2 - 2 * nu);
     const double rim = settings_.constants.radial * 16 / (3 * moved) * std::numbers::pi;
     ContactNear near;
     near.place = c.x.template cast<float>();
@@ -232,7 +228,7 @@ class ContactSystem {
       }
   }
   void widen(Contact& c) const noexcept {
-    c.moments.read(*field_, c.place, c.level, c.m, c.a, c.share * c.share, stuck_load(c));
+    c.moments.read(*field_, c.place, c.level, c.m, c.a, c.share * c.share, stuck_load(c.a, field_->nu()));
     c.C -= c.moments.taken(c.C.trace());
     invert(c);
   }
@@ -253,15 +249,22 @@ class ContactSystem {
       for (std::size_t j = 0; j < count; ++j) {
         if (i == j || contact_[j].dipole == 0) continue;
         const Contact& cj = contact_[j];
-        const Vec3<double> second = by_moments_[i * Capacity + j] *
-                                    Vec3<double>(cj.dipole, cj.tilt.dot(cj.t1()), cj.tilt.dot(cj.t2()));
-        contact_[i].rhs -= kept(second, contact_[j]) * second;
+        const Mat3<double>& by = by_moments_[i * Capacity + j];
+        const Vec3<double> loads(cj.dipole, cj.tilt.dot(cj.t1()), cj.tilt.dot(cj.t2()));
+        contact_[i].rhs -=
+            kept(size_of_both(by.col(0).norm(), cj.dipole, by.rightCols<2>().norm(), cj.tilt), cj) *
+            (by * loads);
       }
     }
     for (std::size_t i = 0; i < n; ++i) system.b[i] = root[i / 3] * contact_[i / 3].rhs[Eigen::Index(i % 3)];
+    std::array<double, Capacity> least;
+    double whole = 0;
+    for (std::size_t i = 0; i < count; ++i) whole += contact_[i].C.trace();
+    for (std::size_t i = 0; i < count; ++i)
+      least[i] = coupled_mode * contact_[i].least + resolved_mode * whole;
     System test = system;
-    for (std::size_t i = 0; i < n; ++i) test.at(i, i) -= coupled_mode * contact_[i / 3].least;
-    if (!test.solve(n)) hold(system, n);
+    for (std::size_t i = 0; i < n; ++i) test.at(i, i) -= least[i / 3];
+    if (!test.solve(n)) hold(system, n, least);
     const bool ok = system.solve(n);
     for (std::size_t i = 0; i < count; ++i) {
       contact_[i].P.setZero();
@@ -271,16 +274,16 @@ class ContactSystem {
   }
   // In units of each contact's least compliance.
   template <class System>
-  void hold(System& system, std::size_t n) const noexcept {
+  static void hold(System& system, std::size_t n, const std::array<double, Capacity>& least) noexcept {
     using Square = Eigen::Matrix<double, 3 * int(Capacity), 3 * int(Capacity)>;
     Square C = Square::Identity();  // beyond n
-    const auto unit = [this](std::size_t r, std::size_t c) {
-      return std::sqrt(contact_[r / 3].least * contact_[c / 3].least);
+    const auto unit = [&least](std::size_t r, std::size_t c) {
+      return std::sqrt(least[r / 3] * least[c / 3]);
     };
     for (std::size_t r = 0; r < n; ++r)
       for (std::size_t c = 0; c < n; ++c)
         C(Eigen::Index(r), Eigen::Index(c)) = system.at((std::max)(r, c), (std::min)(r, c)) / unit(r, c);
-    hold_above(C, coupled_mode);
+    hold_above(C, 1);
     for (std::size_t r = 0; r < n; ++r)
       for (std::size_t c = 0; c <= r; ++c) system.at(r, c) = C(Eigen::Index(r), Eigen::Index(c)) * unit(r, c);
   }
@@ -290,99 +293,14 @@ class ContactSystem {
       for (std::size_t c = 0; c < 3; ++c)
         system.at(3 * i + r, 3 * j + c) = block(Eigen::Index(r), Eigen::Index(c));
   }
-  // A double force along the normal, where there is no traction, works on the strain there: -nu / (1 - nu) of the
-  // surface's. It acts like a radial one of that share.
-  [[nodiscard]] double outward() const noexcept { return field_->nu() / (1 - field_->nu()); }
-
-  // Radial double force of a unit normal force on a disc that is stuck.
-  [[nodiscard]] double stuck_load(const Contact& c) const noexcept {
-    return c.a * (1 - 2 * field_->nu()) / (std::numbers::pi * (1 - field_->nu()));
-  }
-  // Loads of a solved contact beside its force. Linear: for nu < 1/2 a disc under a force spreads and turns by itself; stuck, it
-  // is kept from it, in the mean that the loads' energy knows. And what spreads and turns the surface beneath the patch is held
-  // back by the half-space's loads for that, as far as PatchMoments does not: a narrow one's moments of w are w's slopes.
-  // Second order: the load has moved with the tool; far away that is the moment of the force F by the way d. Near by, a
-  // factor of d_n is the local indentation delta_n = C_near P, which is less where the body as a whole gives way.
-  void press(Contact& c) const noexcept {
-    const SecondOrder& k = settings_.constants;
-    const double nu = field_->nu(), stuck = stuck_load(c);
-    const DiscCompliance near = disc_compliance(c.a, nu);
-    const Vec3<double> t1 = c.t1(), t2 = c.t2();
-    const double depth = c.d.dot(c.m), held = std::clamp(depth, -2 * c.a, 2 * c.a);
-    // No force above the half-space's for d: where the body is far stiffer, the series in depth has nothing to say.
-    const double normal = c.P.dot(c.m);
-    const Vec3<double> indentation = near.along * c.P + (near.normal - near.along) * normal * c.m;
-    const double most = c.d.norm(), length = indentation.norm();
-    const Vec3<double> P = length > most ? Vec3<double>(most / length * c.P) : c.P;
-    const double pushed = P.dot(c.m), indented = near.normal * pushed;
-    const Vec3<double> dragged = P - pushed * c.m;
-    // w at the patch by a unit double force; rows: by a unit tilt along each axis.
-    Vec3<double> radial = Vec3<double>::Zero();
-    Mat3<double> tilting = Mat3<double>::Zero();
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t node = c.place.node[i];
-      const Mat3<double> mean =
-          c.share * c.share * c.place.weight[Eigen::Index(i)] * field_->table().second(node, c.level);
-      const Vec3<double>& n = field_->touch().nodes()[node].normal;
-      const Vec3<double> n1 = perpendicular(n);
-      radial += mean.col(0);
-      tilting += n1 * mean.col(1).transpose() + n.cross(n1) * mean.col(2).transpose();
-    }
-    // 1 / D_near of a tilt. What is held takes less than all of a compliance: held to half where a patch is wide for a thin part.
-    double stiff = c.grip * (1 - c.moments.share) * 8 * c.a * c.a * c.a / (3 * (1 - nu));
-    const double taken = stiff * (2 * radial.squaredNorm() + tilting.squaredNorm()), whole = c.C.trace();
-    stiff *= fading(taken * taken, 0.25 * whole * whole);
-    const Vec3<double> slope = tilting * P,
-                       leaning = (slope.dot(t1) + c.bent[1]) * t1 + (slope.dot(t2) + c.bent[2]) * t2;
-    c.dipole = stuck * pushed - 2 * stiff * (radial.dot(P) + c.bent[0]);
-    c.tilt = -0.5 * stuck * dragged - stiff * leaning;
-    const auto moved = [&](double pull, const Vec3<double>& turn) {
-      Vec3<double> u = pull * radial + tilting.transpose() * turn;
-      if (c.moments.share > 0) u -= c.moments.G.transpose() * c.moments.give * c.moments.of_loads(pull, turn);
-      return u;
-    };
-    const Vec3<double> spread = moved(c.dipole, c.tilt);
-    const double resolved = kept(spread, c);
-    c.dipole *= resolved;
-    c.tilt *= resolved;
-    c.rhs -= resolved * spread;
-    if (!settings_.second_order) return;
-    const double dipole = -outward() * pushed * held;
-    c.dn2 = indented * held;
-    // By how much the body as a whole gives way, along the normal and the surface.
-    const Vec3<double> gone = c.d - near.along * P - (near.normal - near.along) * pushed * c.m,
-                       slid = tangential(gone, c.m);
-    const double sunk = gone.dot(c.m);
-    c.turn = k.turn * (pushed * slid - sunk * dragged);
-    const double steep = indented / c.a;
-    c.push = near.along * near.along * k.drag / (1 + steep * steep) * indented * dragged -
-             near.normal * k.softening * c.dn2 * c.m;
-    const Vec3<double> second = c.push - moved(dipole, c.turn);
-    const double share = kept(second, c) * kept_of_force(second, c);
-    c.dn2 *= share;
-    c.turn *= share;
-    c.push *= share;
-    c.dipole += share * dipole;
-    c.tilt += c.turn;
-    c.rhs += share * second;
-    // Two energies of third degree in P, of which the loads above are the derivatives by w's gradient; those by P are felt by the
-    // tool only. D e: e is the surface's strain by w under the patch (by reciprocity radial . P), D = -outward delta_n P_n; that by
-    // P_n is 2 D e / P_n. lever (P_n w_t - w_n P_t) . s, s the slope of w_n: a body that bends or turns beneath the patch moves it
-    // sideways, too.
-    const Vec3<double> stiffer = 2 * outward() * indented * radial.dot(P) * c.m -
-                                 k.lever * (slid.dot(leaning) * c.m + pushed * (c.w * leaning) -
-                                            sunk * leaning - dragged.dot(leaning) * (c.w * c.m));
-    const Vec3<double> twice = 2 * stiffer;  // so that it is at most a quarter of d, and of the force
-    c.extra = c.S * (kept(twice, c) * kept_of_force(twice, c) * stiffer);
-  }
   void solve_once(std::size_t count) noexcept {
     if constexpr (Capacity > 1)
       if (count > 1) return solve_coupled(count);
     if (count == 1) contact_[0].P = contact_[0].S * contact_[0].rhs;
   }
 
-  // Least compliance of a mode, of the half-space's.
-  static constexpr double one_mode = 0.1, coupled_mode = 0.05;
+  // Least compliance of a mode, of the half-space's; and of all contacts'.
+  static constexpr double one_mode = 0.1, coupled_mode = 0.05, resolved_mode = 1e-4;
   static constexpr double tiny = (std::numeric_limits<double>::min)();
 
   const ResponseField* field_;

@@ -13,15 +13,15 @@
 
 namespace palpate::detail {
 
-/// Raises the eigenvalues of symmetric C (of fixed size: no heap) that are below `least` > 0 to it; the other modes
-/// stay. Continuous in C.
+/// Makes the eigenvalues lambda of symmetric C (of fixed size: no heap) max(|lambda|, least), least > 0; those above stay.
+/// Continuous in C. A true one is positive: one that is far below 0 is off by at least as much, so that mode may well give way.
 template <class M>
 void hold_above(M& C, double least) noexcept {
   const Eigen::SelfAdjointEigenSolver<M> eigen(C);
   const auto& V = eigen.eigenvectors();
-  M missing = V;  // V max(least - lambda, 0)
+  M missing = V;  // V (max(|lambda|, least) - lambda)
   for (Eigen::Index i = 0; i < C.cols(); ++i)
-    missing.col(i) *= (std::max)(least - eigen.eigenvalues()[i], 0.0);
+    missing.col(i) *= (std::max)(std::abs(eigen.eigenvalues()[i]), least) - eigen.eigenvalues()[i];
   C.noalias() += missing * V.transpose();
 }
 

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Loads of a solved contact beside its force: double force, moment of tilt, universal forces of second order. Per tick.
+///
+/// Linear: for nu < 1/2 a disc under a force spreads and turns by itself; stuck, it is kept from it, in the mean that the loads'
+/// energy knows. And what spreads and turns the surface beneath the patch is held back by the half-space's loads for that, as far as
+/// PatchMoments does not: a narrow one's moments of w are w's slopes.
+///
+/// Second order: the load has moved with the tool; far away that is the moment of the force F by the way d. Near by, a factor of d_n
+/// is the local indentation delta_n = C_near P, which is less where the body as a whole gives way. docs/accuracy.md.
+
+#include <palpate/response/contact_coupling.hpp>
+#include <palpate/response/contact_types.hpp>
+#include <palpate/response/held_compliance.hpp>
+
+namespace palpate::detail {
+
+/// Radial double force of a unit normal force on a disc that is stuck [m].
+[[nodiscard]] inline double stuck_load(double a, double nu) noexcept {
+  return a * (1 - 2 * nu) / (std::numbers::pi * (1 - nu));
+}
+/// A double force along the normal, where there is no traction, works on the strain there: -nu / (1 - nu) of the surface's. It acts
+/// like a radial one of that share.
+[[nodiscard]] inline double outward(double nu) noexcept { return nu / (1 - nu); }
+
+/// Share of a displacement that is kept: one of more than half of d, or whose force is more than half of the contact's, means that
+/// the series in depth has ended.
+[[nodiscard]] inline double kept(double size, const PlacedContact& c) noexcept {
+  return fading(size * size, 0.25 * c.d.squaredNorm());
+}
+[[nodiscard]] inline double kept_of_force(const Vec3<double>& u, const PlacedContact& c) noexcept {
+  return fading((c.S * u).squaredNorm(), 0.25 * c.P.squaredNorm());
+}
+/// The largest displacement by a double force and a tilt, given those by units. Not their sum's: where large ones cancel each other,
+/// what is left is noise.
+[[nodiscard]] inline double size_of_both(double by_pull, double pull, double by_turn,
+                                         const Vec3<double>& turn) noexcept {
+  return by_pull * std::abs(pull) + by_turn * turn.norm();
+}
+
+/// w at a contact's patch by its own loads, times mu; by reciprocity the spread and the slopes of w by unit forces.
+struct MovedByLoads {
+  Vec3<double> radial = Vec3<double>::Zero();   ///< by a unit double force
+  Mat3<double> tilting = Mat3<double>::Zero();  ///< rows: by a unit tilt along each axis
+  const PlacedContact* contact;
+
+  MovedByLoads(const ResponseField& field, const PlacedContact& c) noexcept : contact(&c) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t node = c.place.node[i];
+      const Mat3<double> mean =
+          c.share * c.share * c.place.weight[Eigen::Index(i)] * field.table().second(node, c.level);
+      const Vec3<double>& n = field.touch().nodes()[node].normal;
+      const Vec3<double> n1 = perpendicular(n);
+      radial += mean.col(0);
+      tilting += n1 * mean.col(1).transpose() + n.cross(n1) * mean.col(2).transpose();
+    }
+  }
+  /// Less what a wide patch holds back.
+  [[nodiscard]] Vec3<double> by(double pull, const Vec3<double>& turn) const noexcept {
+    Vec3<double> u = pull * radial + tilting.transpose() * turn;
+    const PatchMoments& held = contact->moments;
+    if (held.share > 0) u -= held.G.transpose() * held.give * held.of_loads(pull, turn);
+    return u;
+  }
+  [[nodiscard]] double size(double pull, const Vec3<double>& turn) const noexcept {
+    return std::lerp(size_of_both(radial.norm(), pull, tilting.norm(), turn), by(pull, turn).norm(),
+                     contact->moments.share);
+  }
+};
+
+/// Sets the loads of a contact with P, and takes what they move its patch from `rhs`. `second_order`: null without.
+inline void press(const ResponseField& field, const SecondOrder* second_order, PlacedContact& c) noexcept {
+  const double nu = field.nu(), stuck = stuck_load(c.a, nu);
+  const DiscCompliance near = disc_compliance(c.a, nu);
+  const Vec3<double> t1 = c.t1(), t2 = c.t2();
+  // No force above the half-space's for d: where the body is far stiffer, the series in depth has nothing to say.
+  const double normal = c.P.dot(c.m);
+  const Vec3<double> indentation = near.along * c.P + (near.normal - near.along) * normal * c.m;
+  const double most = c.d.norm(), length = indentation.norm();
+  const Vec3<double> P = length > most ? Vec3<double>(most / length * c.P) : c.P;
+  const double pushed = P.dot(c.m);
+  const Vec3<double> dragged = P - pushed * c.m;
+
+  const MovedByLoads moved(field, c);
+  // 1 / D_near of a tilt. What is held takes less than all of a compliance: held to half where a patch is wide for a thin part.
+  double stiff = c.grip * (1 - c.moments.share) * 8 * c.a * c.a * c.a / (3 * (1 - nu));
+  const double taken = stiff * (2 * moved.radial.squaredNorm() + moved.tilting.squaredNorm()),
+               whole = c.C.trace();
+  stiff *= fading(taken * taken, 0.25 * whole * whole);
+  const Vec3<double> slope = moved.tilting * P,
+                     leaning = (slope.dot(t1) + c.bent[1]) * t1 + (slope.dot(t2) + c.bent[2]) * t2;
+  c.dipole = stuck * pushed - 2 * stiff * (moved.radial.dot(P) + c.bent[0]);
+  c.tilt = -0.5 * stuck * dragged - stiff * leaning;
+  const Vec3<double> spread = moved.by(c.dipole, c.tilt);
+  const double resolved = kept(moved.size(c.dipole, c.tilt), c);
+  c.dipole *= resolved;
+  c.tilt *= resolved;
+  c.rhs -= resolved * spread;
+
+  if (second_order == nullptr) return;
+  const SecondOrder& k = *second_order;
+  const double depth = std::clamp(c.d.dot(c.m), -2 * c.a, 2 * c.a), indented = near.normal * pushed,
+               dipole = -outward(nu) * pushed * depth;
+  c.dn2 = indented * depth;
+  // By how much the body as a whole gives way, along the normal and the surface.
+  const Vec3<double> gone = c.d - near.along * P - (near.normal - near.along) * pushed * c.m,
+                     slid = tangential(gone, c.m);
+  const double sunk = gone.dot(c.m);
+  c.turn = k.turn * (pushed * slid - sunk * dragged);
+  const double steep = indented / c.a;
+  c.push = near.along * near.along * k.drag / (1 + steep * steep) * indented * dragged -
+           near.normal * k.softening * c.dn2 * c.m;
+  const Vec3<double> second = c.push - moved.by(dipole, c.turn);
+  const double share = kept(moved.size(dipole, c.turn) + c.push.norm(), c) * kept_of_force(second, c);
+  c.dn2 *= share;
+  c.turn *= share;
+  c.push *= share;
+  c.dipole += share * dipole;
+  c.tilt += c.turn;
+  c.rhs += share * second;
+  // Two energies of third degree in P, of which the loads above are the derivatives by w's gradient; those by P are felt by the
+  // tool only. D e: e is the surface's strain by w under the patch (by reciprocity radial . P), D = -outward delta_n P_n; that by
+  // P_n is 2 D e / P_n. lever (P_n w_t - w_n P_t) . s, s the slope of w_n: a body that bends or turns beneath the patch moves it
+  // sideways, too.
+  const Vec3<double> stiffer = 2 * outward(nu) * indented * moved.radial.dot(P) * c.m -
+                               k.lever * (slid.dot(leaning) * c.m + pushed * (c.w * leaning) -
+                                          sunk * leaning - dragged.dot(leaning) * (c.w * c.m));
+  const Vec3<double> twice = 2 * stiffer;  // so that it is at most a quarter of d, and of the force
+  c.extra = c.S * (kept(twice.norm(), c) * kept_of_force(twice, c) * stiffer);
+}
+
+}  // namespace palpate::detail
