@@ -91,26 +91,11 @@ class ResponseFieldDeformation {
     }
     if (out.positions == nullptr || !is_new(pressed, count)) return moved;
     tick_.solve(pressed.data(), count, forces_.data());
-    using detail::Lane;
-    constexpr float far = (std::numeric_limits<float>::max)();
-    detail::Lane3 low{Lane::Constant(far), Lane::Constant(far), Lane::Constant(far)},
-        high{-low.x, -low.y, -low.z};
-    tick_.each(
-        display_, [&, to = reinterpret_cast<unsigned char*>(out.positions), stride = out.position_stride,
-                   x = position_[0].data(), y = position_[1].data(), z = position_[2].data(),
-                   keep = p_.normals](std::size_t slot, const detail::Lane3& u) {
-          const detail::Lane3 at{Lane::Map(display_.x() + slot) + u.x, Lane::Map(display_.y() + slot) + u.y,
-                                 Lane::Map(display_.z() + slot) + u.z};
-          low = {low.x.min(at.x), low.y.min(at.y), low.z.min(at.z)};
-          high = {high.x.max(at.x), high.y.max(at.y), high.z.max(at.z)};
-          ResponseTick<Contacts>::put_lanes(display_.vertex() + slot, at,
-                                            [=](std::size_t v, float px, float py, float pz) {
-                                              detail::put3(to + stride * v, T(px), T(py), T(pz));
-                                              if (keep) x[v] = px, y[v] = py, z[v] = pz;
-                                            });
-        });
+    Put<T> put(display_, out, p_.normals ? &position_ : nullptr);
+    tick_.each(display_, put);
     moved.vertices = display_.size();
     if (moved.vertices > 0) {
+      const detail::Lane3 &low = put.low, &high = put.high;
       moved.lower = Vec3<float>(low.x.minCoeff(), low.y.minCoeff(), low.z.minCoeff()).template cast<S>();
       moved.upper = Vec3<float>(high.x.maxCoeff(), high.y.maxCoeff(), high.z.maxCoeff()).template cast<S>();
     }
@@ -130,6 +115,44 @@ class ResponseFieldDeformation {
 
  private:
   static constexpr const char* name = "ResponseFieldDeformation";
+
+  // Puts lanes of vertices where they belong, and finds the box around them.
+  template <Real T>
+  struct Put {
+    using Lane = detail::Lane;
+    const float *at_x, *at_y, *at_z;  // at rest, by slot
+    const std::uint32_t* vertex;
+    unsigned char* to;
+    std::size_t stride;
+    float *x = nullptr, *y = nullptr, *z = nullptr;  // by vertex; null: not wanted
+    detail::Lane3 low, high;
+
+    Put(const ResponseDisplay& display, const VertexBuffer<T>& out,
+        std::array<std::vector<float>, 3>* position) noexcept
+        : at_x(display.x()),
+          at_y(display.y()),
+          at_z(display.z()),
+          vertex(display.vertex()),
+          to(reinterpret_cast<unsigned char*>(out.positions)),
+          stride(out.position_stride) {
+      if (position != nullptr)
+        x = (*position)[0].data(), y = (*position)[1].data(), z = (*position)[2].data();
+      const Lane far = Lane::Constant((std::numeric_limits<float>::max)());
+      low = {far, far, far};
+      high = {-far, -far, -far};
+    }
+    PALPATE_INLINE void operator()(std::size_t slot, const detail::Lane3& u) noexcept {
+      const detail::Lane3 at{Lane::Map(at_x + slot) + u.x, Lane::Map(at_y + slot) + u.y,
+                             Lane::Map(at_z + slot) + u.z};
+      low = {low.x.min(at.x), low.y.min(at.y), low.z.min(at.z)};
+      high = {high.x.max(at.x), high.y.max(at.y), high.z.max(at.z)};
+      ResponseTick<Contacts>::put_lanes(vertex + slot, at,
+                                        [this](std::size_t v, float px, float py, float pz) {
+                                          detail::put3(to + stride * v, T(px), T(py), T(pz));
+                                          if (x != nullptr) x[v] = px, y[v] = py, z[v] = pz;
+                                        });
+    }
+  };
 
   [[nodiscard]] ResponseContact<S> patch_of(const ContactState<S>& c) const noexcept {
     const S area = c.area > S(0) ? c.area : S(0);

@@ -18,6 +18,12 @@ namespace palpate::detail {
 /// Places or displacements, one lane per axis.
 struct Lane3 {
   Lane x, y, z;
+  PALPATE_INLINE Lane3& operator+=(const Lane3& u) noexcept {
+    x += u.x;
+    y += u.y;
+    z += u.z;
+    return *this;
+  }
 };
 
 struct ContactNear {

@@ -8,6 +8,8 @@
 #include <palpate/response/response_display.hpp>
 #include <palpate/response/sphere_contact.hpp>
 
+#include <type_traits>
+
 namespace palpate {
 
 /// Solves up to `Capacity` coupled contacts (contact_system.hpp) and writes the field. Holds the buffers; no heap after
@@ -23,7 +25,8 @@ class ResponseTick {
         second_(3 * field.stride(), 0.f),
         near_(Capacity * 3 * field.stride(), 0.f),
         weight_(field.touch().solved(), 0.f),
-        moment_(3 * field.touch().solved(), 0.f) {
+        moment_(3 * field.touch().solved(), 0.f),
+        bends_(field.bends(), field.stride()) {
     patch_.reserve(weight_.size());
   }
 
@@ -87,13 +90,13 @@ class ResponseTick {
   /// Displacement of every bound vertex, after `solve`: component i of vertex v at out[v * stride + i].
   template <Real S>
   void displace(const ResponseDisplay& display, S* out, std::size_t stride) noexcept {
-    each(display, [out, stride, vertex = display.vertex()](std::size_t slot, const Lane3& u) {
-      const auto put = [out, stride](std::size_t v, float x, float y, float z) {
+    const auto put = [out, stride, vertex = display.vertex()](std::size_t slot, const Lane3& u) {
+      put_lanes(vertex + slot, u, [out, stride](std::size_t v, float x, float y, float z) {
         S* to = out + v * stride;
         to[0] = S(x), to[1] = S(y), to[2] = S(z);
-      };
-      put_lanes(vertex + slot, u, put);
-    });
+      });
+    };
+    each(display, put);
   }
   /// put(vertex, x, y, z) for each lane.
   template <class Put>
@@ -107,31 +110,39 @@ class ResponseTick {
   }
 
   /// The same, handed out: emit(slot, u) with a lane of displacements from that slot on; a vertex may have several slots,
-  /// all the same.
+  /// all the same. An `emit` that can be assigned is copied and put back.
   ///
   /// Total field at the solve mesh's vertices, interpolated; near a contact u_near is taken at the vertex itself instead.
   template <class Emit>
-  void each(const ResponseDisplay& display, const Emit& emit) noexcept {
+  void each(const ResponseDisplay& display, Emit& emit) noexcept {
     combine();
     const SolveMesh& m = field_->mesh();
     const auto reach =
         static_cast<float>(1.5 * m.length);  // beyond, the linear interpolant of 1/r is within 5 % of it
+    const auto bend_reach = static_cast<float>(4 * m.length);  // beyond, w hardly bends
     for (const auto& span : display.spans()) {
       FixedVector<std::uint32_t, Capacity> close;
+      bool bent = false;
       for (std::uint32_t c = 0; c < count_; ++c) {
-        const float limit = span.radius + reach + near_field_[c].a;
-        if ((span.centre - near_field_[c].place).squaredNorm() < limit * limit) close.push_back(c);
+        const float size = span.radius + near_field_[c].a,
+                    r2 = (span.centre - near_field_[c].place).squaredNorm();
+        if (r2 < (size + reach) * (size + reach)) close.push_back(c);
+        bent = bent || r2 < (size + bend_reach) * (size + bend_reach);
       }
-      if (close.empty() || m.fixed_triangle[span.triangle])
-        spread(display, span, emit);
+      Bend bend;
+      const bool free = !m.fixed_triangle[span.triangle];
+      bent = bent && free && bends_.find(span.triangle, near_field_, count_, bend_reach, bend);
+      if (free && !close.empty())
+        refine(display, span, bent ? &bend : nullptr, close, reach, emit);
       else
-        refine(display, span, close, reach, emit);
+        spread(display, span, bent ? &bend : nullptr, emit);
     }
   }
 
  private:
   using Lane = detail::Lane;
   using Lane3 = detail::Lane3;
+  using Bend = detail::BentEdges::OfTriangle;
   static constexpr std::uint32_t lanes = Lane::SizeAtCompileTime;
 
   // Near fields and columns of all contacts, summed at the solve mesh's vertices.
@@ -179,6 +190,17 @@ class ResponseTick {
     const Row free(field_->is_free(), static_cast<Eigen::Index>(n));
     for (std::size_t axis = 0; axis < 3; ++axis) sum.segment(Eigen::Index(axis * n), Eigen::Index(n)) *= free;
     hold_back();
+    read_rest();
+  }
+
+  // Of what the near fields leave: they are exact near by.
+  void read_rest() noexcept {
+    using Row = Eigen::Map<const Eigen::ArrayXf>;
+    const auto size = static_cast<Eigen::Index>(total_.size());
+    Eigen::Map<Eigen::ArrayXf> rest(second_.data(), size);
+    rest = Row(total_.data(), size);
+    for (std::size_t c = 0; c < count_; ++c) rest -= Row(&near_[c * total_.size()], size);
+    bends_.read(second_.data(), field_->stride());
   }
 
   // A body may move farther than the tool by its levers; a field beyond 4 d is one that the mesh does not resolve. It is
@@ -234,18 +256,29 @@ class ResponseTick {
     }
   };
   template <class Emit>
-  void spread(const ResponseDisplay& display, const ResponseDisplay::Span& span,
-              const Emit& emit) const noexcept {
+  void spread(const ResponseDisplay& display, const ResponseDisplay::Span& span, const Bend* bend,
+              Emit& emit) const noexcept {
     const Linear total(total_.data(), field_->stride(), field_->mesh().triangles[span.triangle]);
-    for (std::uint32_t i = span.begin; i < span.end; i += lanes)
-      emit(i, total(Lane::Map(display.b1() + i), Lane::Map(display.b2() + i)));
+    using Out = std::conditional_t<std::is_copy_assignable_v<Emit>, Emit, Emit&>;
+    Out out = emit;  // a copy is in registers: what it writes might be any of it otherwise
+    if (bend == nullptr) {
+      for (std::uint32_t i = span.begin; i < span.end; i += lanes)
+        out(i, total(Lane::Map(display.b1() + i), Lane::Map(display.b2() + i)));
+    } else {
+      for (std::uint32_t i = span.begin; i < span.end; i += lanes) {
+        const Lane b1 = Lane::Map(display.b1() + i), b2 = Lane::Map(display.b2() + i);
+        Lane3 u = total(b1, b2);
+        u += (*bend)(b1, b2);
+        out(i, u);
+      }
+    }
+    if constexpr (std::is_copy_assignable_v<Emit>) emit = out;
   }
 
   // The same with the near fields exact, fading to their interpolants at the end of their reach.
   template <class Emit>
-  void refine(const ResponseDisplay& display, const ResponseDisplay::Span& span,
-              const FixedVector<std::uint32_t, Capacity>& close, float reach,
-              const Emit& emit) const noexcept {
+  void refine(const ResponseDisplay& display, const ResponseDisplay::Span& span, const Bend* bend,
+              const FixedVector<std::uint32_t, Capacity>& close, float reach, Emit& emit) const noexcept {
     const auto& t = field_->mesh().triangles[span.triangle];
     const std::size_t n = field_->stride();
     const Linear total(total_.data(), n, t);
@@ -255,6 +288,7 @@ class ResponseTick {
       const Lane b1 = Lane::Map(display.b1() + i), b2 = Lane::Map(display.b2() + i);
       const Lane3 at{Lane::Map(display.x() + i), Lane::Map(display.y() + i), Lane::Map(display.z() + i)};
       Lane3 u = total(b1, b2);
+      if (bend != nullptr) u += (*bend)(b1, b2);
       bool held = false;
       for (auto c : close) {
         const detail::ContactNear& k = near_field_[c];
@@ -309,6 +343,7 @@ class ResponseTick {
   std::vector<float> weight_;         // per solved node: its part of a contact's force; 0 between uses
   std::vector<float> moment_;         // three numbers each, likewise
   std::vector<std::uint32_t> patch_;  // nodes with a part; never more than reserved
+  detail::BentEdges bends_;
 };
 
 }  // namespace palpate

@@ -16,7 +16,7 @@ class ResponseDisplay {
   struct Span {
     std::uint32_t triangle, begin, end;
     Vec3<float> centre;
-    float radius;
+    float radius;  ///< of its vertices, and of the middles of the triangle's edges
   };
 
   template <Real S>
@@ -40,7 +40,12 @@ class ResponseDisplay {
         const auto& t = mesh.triangles[bound.triangle];
         const Vec3<double> c = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
         const auto n = static_cast<std::uint32_t>(vertex_.size());
-        spans_.push_back({bound.triangle, n, n, c.cast<float>(), 0});
+        float radius = 0;  // of the middles of its edges
+        for (std::size_t e = 0; e < 3; ++e)
+          radius = (std::max)(
+              radius,
+              static_cast<float>((0.5 * (mesh.vertices[t[e]] + mesh.vertices[t[(e + 1) % 3]]) - c).norm()));
+        spans_.push_back({bound.triangle, n, n, c.cast<float>(), radius});
       }
       Span& span = spans_.back();
       const Vec3<float> p = points[order[i]].template cast<float>();

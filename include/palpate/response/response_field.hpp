@@ -15,6 +15,7 @@
 /// Limits: small strain per unit load; parts thinner than an edge of the solve mesh bend too little: `unresolved_area()`.
 /// Reports (error.hpp) bad E, nu, mesh or fixed region. Source: [brebbia1984], [james1999].
 
+#include <palpate/response/bent_edges.hpp>
 #include <palpate/response/patch_table.hpp>
 #include <palpate/response/response_columns.hpp>
 
@@ -34,6 +35,9 @@ struct ResponseParts {
   std::vector<PatchTable::Moments> moments;
   std::vector<std::uint32_t> spread_begin;  ///< see PatchTable
   std::vector<TouchMesh::Share> spread;
+  std::vector<BendTable::Edges> edges;  ///< see BendTable
+  std::vector<std::uint32_t> bend_begin;
+  std::vector<BendTable::Weight> bends;
 };
 
 class ResponseField {
@@ -85,6 +89,7 @@ class ResponseField {
                        std::move(parts.shares));
     table_ = PatchTable(touch_, std::move(parts.own), std::move(parts.second), std::move(parts.moments),
                         levels, std::move(parts.spread_begin), std::move(parts.spread));
+    bends_ = BendTable(mesh_, std::move(parts.edges), std::move(parts.bend_begin), std::move(parts.bends));
     place_vertices();
   }
   [[nodiscard]] ResponseParts parts() const {
@@ -100,7 +105,10 @@ class ResponseField {
             table_.second_rows(),
             table_.moment_rows(),
             table_.spread_begin(),
-            table_.all_spread()};
+            table_.all_spread(),
+            bends_.of_triangle(),
+            bends_.begin(),
+            bends_.weights()};
   }
 
   [[nodiscard]] double E() const noexcept { return E_; }
@@ -112,9 +120,10 @@ class ResponseField {
   [[nodiscard]] double unresolved_area() const { return palpate::unresolved_area(mesh_); }
   [[nodiscard]] const TouchMesh& touch() const noexcept { return touch_; }
   [[nodiscard]] const PatchTable& table() const noexcept { return table_; }
+  [[nodiscard]] const BendTable& bends() const noexcept { return bends_; }
   /// Bytes that a tick may read.
   [[nodiscard]] std::size_t memory() const noexcept {
-    return columns_.size() * sizeof(float) + table_.memory();
+    return columns_.size() * sizeof(float) + table_.memory() + bends_.memory();
   }
   /// Vertices of the solve mesh, rounded up to whole lanes.
   [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
@@ -171,6 +180,7 @@ class ResponseField {
                "the boundary equation has no finite solution: is the mesh closed, without triangles that "
                "fold over?");
     mesh_ = bem.mesh();
+    bends_ = BendTable(mesh_);
     touch_ = TouchMesh(mesh_);
     stride_ = padded(mesh_.vertices.size());
     columns_.resize(loads * 3 * stride_ * touch_.nodes().size(), 0.f);
@@ -242,6 +252,7 @@ class ResponseField {
   SolveMesh mesh_;
   TouchMesh touch_;
   PatchTable table_;
+  BendTable bends_;
   std::vector<float> columns_, place_;
   std::size_t stride_ = 0;
 };

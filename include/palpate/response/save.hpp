@@ -25,7 +25,7 @@
 
 namespace palpate {
 
-inline constexpr std::uint32_t saved_field_version = 3;
+inline constexpr std::uint32_t saved_field_version = 4;
 
 namespace detail {
 
@@ -137,6 +137,9 @@ class ByteReader {
   body.put_list(parts.moments);
   body.put_list(parts.spread_begin);
   body.put_list(parts.spread);
+  body.put_list(parts.edges);
+  body.put_list(parts.bend_begin);
+  body.put_list(parts.bends);
   body.put_list(parts.columns);
   const std::span<const std::byte> content =
       std::span<const std::byte>(body.bytes).subspan(detail::saved_head);
@@ -163,7 +166,7 @@ class ByteReader {
   std::memcpy(&size, bytes.data() + 16, 8);
   std::memcpy(&sum, bytes.data() + 24, 8);
   if (order != 0x01020304) fail(where, "saved on a machine with the other byte order");
-  if (version != saved_field_version) fail(where, "the format's version is not this library's 3", version);
+  if (version != saved_field_version) fail(where, "the format's version is not this library's 4", version);
   const std::span<const std::byte> content = bytes.subspan(detail::saved_head);
   if (content.size() != size)
     fail(where, "cut short or too long: bytes missing (more than there should be: < 0)",
@@ -187,6 +190,9 @@ class ByteReader {
   parts.moments = in.get_list<PatchTable::Moments>();
   parts.spread_begin = in.get_list<std::uint32_t>();
   parts.spread = in.get_list<TouchMesh::Share>();
+  parts.edges = in.get_list<BendTable::Edges>();
+  parts.bend_begin = in.get_list<std::uint32_t>();
+  parts.bends = in.get_list<BendTable::Weight>();
   parts.columns = in.get_list<float>();
   // Contents: a bad number here would be read out of bounds in a tick.
   const auto require = [where](bool holds, const char* rule) {
@@ -221,6 +227,13 @@ class ByteReader {
               levels < 64 && parts.own.size() == levels * parts.triangles.size(),
           "the tables' lengths are not the nodes'");
   require_shares(parts.spread_begin, parts.spread, levels * k, k, solved);
+  bool bends = parts.edges.size() == parts.mesh.triangles.size() && !parts.bend_begin.empty() &&
+               parts.bend_begin.front() == 0 && parts.bend_begin.back() == parts.bends.size() &&
+               std::is_sorted(parts.bend_begin.begin(), parts.bend_begin.end());
+  for (const auto& t : parts.edges)
+    for (auto e : t) bends = bends && e + std::size_t{1} < parts.bend_begin.size();
+  for (const auto& w : parts.bends) bends = bends && w.vertex < n && is_finite(w.weight);
+  require(bends, "the edges' bends are not the mesh's");
   for (const auto& t : parts.mesh.triangles)
     for (auto v : t) require(v < n, "a triangle's corner is not a vertex");
   for (const auto& t : parts.triangles)
