@@ -193,7 +193,7 @@ class ResponseTick {
     read_rest();
   }
 
-  // Of what the near fields leave: they are exact near by.
+  // For the bends: the field less the near fields, which need none, as they are exact near by.
   void read_rest() noexcept {
     using Row = Eigen::Map<const Eigen::ArrayXf>;
     const auto size = static_cast<Eigen::Index>(total_.size());
