@@ -63,8 +63,9 @@ struct MovedByLoads {
     if (held.share > 0) u -= held.G.transpose() * held.give * held.of_loads(pull, turn);
     return u;
   }
-  [[nodiscard]] double size(double pull, const Vec3<double>& turn) const noexcept {
-    return std::lerp(size_of_both(radial.norm(), pull, tilting.norm(), turn), by(pull, turn).norm(),
+  /// Of `u` = by(pull, turn).
+  [[nodiscard]] double size(const Vec3<double>& u, double pull, const Vec3<double>& turn) const noexcept {
+    return std::lerp(size_of_both(radial.norm(), pull, tilting.norm(), turn), u.norm(),
                      contact->moments.share);
   }
 };
@@ -93,7 +94,7 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
   c.dipole = stuck * pushed - 2 * stiff * (moved.radial.dot(P) + c.bent[0]);
   c.tilt = -0.5 * stuck * dragged - stiff * leaning;
   const Vec3<double> spread = moved.by(c.dipole, c.tilt);
-  const double resolved = kept(moved.size(c.dipole, c.tilt), c);
+  const double resolved = kept(moved.size(spread, c.dipole, c.tilt), c);
   c.dipole *= resolved;
   c.tilt *= resolved;
   c.rhs -= resolved * spread;
@@ -111,8 +112,8 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
   const double steep = indented / c.a;
   c.push = near.along * near.along * k.drag / (1 + steep * steep) * indented * dragged -
            near.normal * k.softening * c.dn2 * c.m;
-  const Vec3<double> second = c.push - moved.by(dipole, c.turn);
-  const double share = kept(moved.size(dipole, c.turn) + c.push.norm(), c) * kept_of_force(second, c);
+  const Vec3<double> answer = moved.by(dipole, c.turn), second = c.push - answer;
+  const double share = kept(moved.size(answer, dipole, c.turn) + c.push.norm(), c) * kept_of_force(second, c);
   c.dn2 *= share;
   c.turn *= share;
   c.push *= share;

@@ -40,12 +40,11 @@ class ResponseDisplay {
         const auto& t = mesh.triangles[bound.triangle];
         const Vec3<double> c = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
         const auto n = static_cast<std::uint32_t>(vertex_.size());
-        float radius = 0;  // of the middles of its edges
-        for (std::size_t e = 0; e < 3; ++e)
-          radius = (std::max)(
-              radius,
-              static_cast<float>((0.5 * (mesh.vertices[t[e]] + mesh.vertices[t[(e + 1) % 3]]) - c).norm()));
-        spans_.push_back({bound.triangle, n, n, c.cast<float>(), radius});
+        const Vec3<float> centre = c.cast<float>();
+        float radius = 0;
+        for (const std::uint32_t e : field.bends().of_triangle()[bound.triangle])
+          radius = (std::max)(radius, (field.bends().middle(e) - centre).norm());
+        spans_.push_back({bound.triangle, n, n, centre, radius});
       }
       Span& span = spans_.back();
       const Vec3<float> p = points[order[i]].template cast<float>();
