@@ -31,7 +31,7 @@ template <Real T>
 struct VertexBuffer {
   T* positions = nullptr;                       ///< first vertex's x; y and z follow it
   std::size_t position_stride = 3 * sizeof(T);  ///< from one vertex to the next [bytes], >= 3 sizeof(T)
-  T* normals = nullptr;                         ///< null: no normals
+  T* normals = nullptr;                         ///< null: no normals; unit ones, worked out in float
   std::size_t normal_stride = 3 * sizeof(T);    ///< ditto
 };
 

@@ -10,6 +10,7 @@
 #include <palpate/interpolation/neighbourhood.hpp>
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace palpate {
@@ -164,36 +165,33 @@ class DisplacementField {
         v = slot_of[v];
       }
     }
-    std::vector<std::size_t> starts;
-    for (const Face<S>& face : partition().faces()) starts.push_back(face.first);
-    normals_ = VertexNormals<S>(triangles, order.size(), starts);
     for (std::uint32_t f = 0; f < dirty_.size(); ++f) {
       const Face<S>& face = partition().faces()[f];
       for (std::size_t slot = face.first; slot < face.first + face.count; ++slot) face_of[slot] = f;
     }
-    const std::span<const typename VertexNormals<S>::Run> runs = normals_.runs();
-    std::uint32_t run = 0;
+    const VertexRings rings(triangles, order.size());
+    std::vector<std::array<std::uint32_t, 2>> around;  // face, slot: of other faces, next to this one
     for (const Face<S>& face : partition().faces()) {
-      run_start_.push_back(run);
-      rim_start_.push_back(rim_.size());
-      for (; run < runs.size() && runs[run].first < face.first + face.count; ++run) {
-        for (const std::uint32_t neighbour : normals_.ring(runs[run])) {
-          for (std::uint32_t i = 0; i < runs[run].count; ++i) {
-            const std::uint32_t other = neighbour + i;
-            if (other >= face.first && other < face.first + face.count) continue;
-            const auto after =
-                std::upper_bound(runs.begin(), runs.end(), other,
-                                 [](std::uint32_t slot, const auto& r) { return slot < r.first; });
-            rim_.push_back({other, face_of[other], static_cast<std::uint32_t>(after - runs.begin()) - 1});
-          }
-        }
+      std::vector<std::uint32_t> inside(face.count);
+      std::iota(inside.begin(), inside.end(), static_cast<std::uint32_t>(face.first));
+      around.clear();
+      for (const std::uint32_t slot : inside) {
+        for (const std::uint32_t other : rings[slot])
+          if (face_of[other] != face_of[slot]) around.push_back({face_of[other], other});
       }
-      const auto begin = rim_.begin() + static_cast<std::ptrdiff_t>(rim_start_.back());
-      std::sort(begin, rim_.end());
-      rim_.erase(std::unique(begin, rim_.end()), rim_.end());
+      inside_.push_back(normals_.add(rings, inside));
+      std::sort(around.begin(), around.end());
+      around.erase(std::unique(around.begin(), around.end()), around.end());
+      rim_start_.push_back(rim_.size());
+      for (std::size_t k = 0; k < around.size();) {
+        const std::uint32_t f = around[k][0];
+        std::vector<std::uint32_t> slots;
+        for (; k < around.size() && around[k][0] == f; ++k) slots.push_back(around[k][1]);
+        rim_.push_back({f, normals_.add(rings, slots)});
+      }
     }
-    run_start_.push_back(run);
     rim_start_.push_back(rim_.size());
+    place_ = VertexPlaces(order.size());
   }
 
   void forget() noexcept {
@@ -204,10 +202,9 @@ class DisplacementField {
     previous_count_ = 0;
     contacts_.clear();
     corners_.clear();
-    for (std::size_t axis = 0; axis < position_.size(); ++axis) {
-      const S* const rest = partition().rest(static_cast<int>(axis));
-      position_[axis].assign(rest, rest + partition().size() + VertexNormals<S>::padding);
-    }
+    const S *const x = partition().rest(0), *const y = partition().rest(1), *const z = partition().rest(2);
+    for (std::size_t slot = 0; p_.normals && slot < partition().size(); ++slot)
+      place_.set(slot, static_cast<float>(x[slot]), static_cast<float>(y[slot]), static_cast<float>(z[slot]));
   }
 
   // Keeps the input; false when it is the same as in the last tick.
@@ -271,56 +268,60 @@ class DisplacementField {
         out.positions, out.position_stride, count, [vertex](std::size_t i) { return vertex[i]; }, x[0].value,
         x[1].value, x[2].value);
     if (!p_.normals) return;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      S* const now = position_[axis].data() + first;
-      std::size_t i = 0;
-      for (; i + detail::lanes<S> <= count; i += detail::lanes<S>)
-        detail::store_lanes<S>(now + i, detail::load_lanes(x[axis].value + i));
-      for (; i < count; ++i) now[i] = x[axis][i];
+    std::size_t i = 0;
+    for (; i + 4 <= count; i += 4) {
+      const auto at = [&x, i](std::size_t axis) -> Eigen::Array4f {
+        return Eigen::Map<const Eigen::Array<S, 4, 1>>(x[axis].value + i).template cast<float>();
+      };
+      const Eigen::Array4f px = at(0), py = at(1), pz = at(2);
+      place_.set4(first + i, px.data(), py.data(), pz.data());
     }
+    for (; i < count; ++i)
+      place_.set(first + i, static_cast<float>(x[0][i]), static_cast<float>(x[1][i]),
+                 static_cast<float>(x[2][i]));
   }
 
   template <Real T>
   PALPATE_FLATTEN void write_normals(const VertexBuffer<T>& out) const noexcept {
-    const auto rest = [this](int axis, std::size_t slot) { return partition().normal(axis)[slot]; };
+    const auto rest = [this](std::size_t slot) {
+      const auto normal = [this, slot](int axis) {
+        return static_cast<float>(partition().normal(axis)[slot]);
+      };
+      return Packed3{normal(0), normal(1), normal(2)};
+    };
     unsigned char* const base = reinterpret_cast<unsigned char*>(out.normals);
     const auto store = [base, stride = out.normal_stride, order = partition().order().data()](
-                           std::size_t slot, S x, S y, S z) {
+                           std::size_t slot, float x, float y, float z) {
       detail::put3(base + stride * order[slot], static_cast<T>(x), static_cast<T>(y), static_cast<T>(z));
     };
-    using Units = typename VertexNormals<S>::template Units<decltype(rest), decltype(store)>;
-    Units units(normals_, position_[0].data(), position_[1].data(), position_[2].data(), rest, store);
     for (std::size_t f = 0; f < dirty_.size(); ++f) {
       if (!dirty_[f]) continue;
-      for (std::size_t r = run_start_[f]; r < run_start_[f + 1]; ++r)
-        units.add(normals_.runs()[r], 0, normals_.runs()[r].count);
-      for (std::size_t k = rim_start_[f]; k < rim_start_[f + 1]; ++k) {
-        const auto& run = normals_.runs()[rim_[k].run];
-        if (!dirty_[rim_[k].face]) units.add(run, rim_[k].slot - run.first, 1);
-      }
+      normals_.each_unit(inside_[f], place_, rest, store);
+      for (std::size_t k = rim_start_[f]; k < rim_start_[f + 1]; ++k)
+        if (!dirty_[rim_[k].face]) normals_.each_unit(rim_[k].vertices, place_, rest, store);
     }
-    units.flush();
   }
 
   static constexpr const char* name = "DisplacementField";
 
-  struct RimVertex {  // a vertex of another face next to this one
-    std::uint32_t slot, face, run;
-    [[nodiscard]] auto operator<=>(const RimVertex&) const noexcept = default;
+  struct Rim {  // vertices of another face next to this one
+    std::uint32_t face;
+    VertexNormals::Group vertices;
   };
 
   Params p_;
   I interpolation_;
   PALPATE_NO_UNIQUE_ADDRESS N neighbourhood_;
-  VertexNormals<S> normals_;
-  std::vector<RimVertex> rim_;
-  std::vector<std::size_t> rim_start_, run_start_;
+  VertexNormals normals_;
+  std::vector<VertexNormals::Group> inside_;  // by face
+  std::vector<Rim> rim_;
+  std::vector<std::size_t> rim_start_;
   std::vector<Load> loads_, previous_;
   std::vector<Dent> dents_, previous_dents_;
   std::vector<ContactDisplacement<S>> contacts_;
   std::vector<Vec3<S>> corners_;
   std::vector<std::uint8_t> dirty_;
-  std::array<std::vector<S>, 3> position_;  // with normals: of every slot, now
+  VertexPlaces place_;  // with normals: of every slot, now
   std::size_t active_ = 0, previous_count_ = 0;
 };
 

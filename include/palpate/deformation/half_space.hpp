@@ -53,15 +53,11 @@ class HalfSpaceDeformation {
       : p_(checked(params, mesh)), base_(mesh, fixed, static_cast<double>(params.nu), name) {
     set_vertices(mesh);
     if (!p_.normals) return;
-    normals_ = VertexNormals<float>(mesh.triangles, mesh.vertices.size());
-    for (auto& list : rest_normal_) list.resize(mesh.vertices.size());
+    normals_ = VertexNormals(VertexRings(mesh.triangles, mesh.vertices.size()));
+    rest_normal_.resize(mesh.vertices.size());
+    place_ = VertexPlaces(mesh.vertices.size());
     displace();
-    normals_.each_unit(now_[0].data(), now_[1].data(), now_[2].data(), rest_normal_,
-                       [this](std::size_t v, float x, float y, float z) {
-                         rest_normal_[0][v] = x;
-                         rest_normal_[1][v] = y;
-                         rest_normal_[2][v] = z;
-                       });
+    each_normal([this](std::size_t v, float x, float y, float z) { rest_normal_[v] = {x, y, z}; });
   }
 
   /// Fills the whole buffer with the undeformed shape. The next write() starts from it.
@@ -130,7 +126,7 @@ class HalfSpaceDeformation {
 
   void set_vertices(const MeshData<S>& mesh) {
     const std::size_t n = mesh.vertices.size(), padded = (n + lane - 1) / lane * lane;
-    for (auto& list : now_) list.assign(padded + VertexNormals<float>::padding, 0.f);
+    for (auto& list : now_) list.assign(padded, 0.f);
     for (auto* list : {&x_, &y_, &z_, &ux_, &uy_, &uz_}) list->assign(padded, 0.f);
     for (auto* list : {&profile_.force_in, &profile_.force_down, &profile_.shear_in, &profile_.shear_down,
                        &profile_.shear_along, &profile_.tilt_in, &profile_.tilt_down, &profile_.tilt_along,
@@ -275,6 +271,8 @@ class HalfSpaceDeformation {
       else
         for (std::size_t v = 0; v < n; ++v) out[v] = x[v] + moves[v] * u[v];
     }
+    for (std::size_t v = 0; p_.normals && v < n; v += lane)
+      place_.set4(v, &now_[0][v], &now_[1][v], &now_[2][v]);
   }
 
   using Read = Eigen::Map<const Lane>;
@@ -363,11 +361,15 @@ class HalfSpaceDeformation {
         out.positions, out.position_stride, moves_.size(), [](std::size_t v) { return v; }, now_[0].data(),
         now_[1].data(), now_[2].data());
     if (!p_.normals || out.normals == nullptr) return;
-    normals_.each_unit(now_[0].data(), now_[1].data(), now_[2].data(), rest_normal_,
-                       [&](std::size_t v, float x, float y, float z) {
-                         detail::store3(
-                             out.normals, out.normal_stride, 1, [v](std::size_t) { return v; }, &x, &y, &z);
-                       });
+    unsigned char* const base = reinterpret_cast<unsigned char*>(out.normals);
+    each_normal([base, stride = out.normal_stride](std::size_t v, float x, float y, float z) {
+      detail::put3(base + stride * v, T(x), T(y), T(z));
+    });
+  }
+  template <class Emit>
+  void each_normal(const Emit& emit) const noexcept {
+    normals_.each_unit(
+        normals_.all(), place_, [this](std::size_t v) { return rest_normal_[v]; }, emit);
   }
 
   static constexpr int most_rows = 3 * static_cast<int>(Capacity);
@@ -379,9 +381,10 @@ class HalfSpaceDeformation {
   std::vector<float> x_, y_, z_, ux_, uy_, uz_;  // undeformed places and displacements [m], whole lanes
   std::vector<float> moves_;                     // 0 for a fixed vertex, else 1
   Profile profile_;
-  VertexNormals<float> normals_;
+  VertexNormals normals_;
   std::array<std::vector<float>, 3> now_;  // places [m]
-  std::array<std::vector<float>, 3> rest_normal_;
+  VertexPlaces place_;                     // with normals: the same
+  std::vector<Packed3> rest_normal_;
   std::array<Contact, Capacity> contact_{};
   std::array<V, Capacity> force_{};
   Screw load_ = Screw::Zero(), motion_ = Screw::Zero();

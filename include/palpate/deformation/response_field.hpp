@@ -48,29 +48,25 @@ class ResponseFieldDeformation {
     if (p_.least_radius == S(0)) p_.least_radius = static_cast<S>(0.25 * field_->mesh().length);
     const std::size_t n = mesh.vertices.size();
     if (p_.normals) {
-      normals_ = VertexNormals<float>(mesh.triangles, n);
-      for (auto& list : rest_normal_) list.resize(n);
+      normals_ = VertexNormals(VertexRings(mesh.triangles, n));
+      rest_normal_.resize(n);
     }
-    for (auto& list : position_) list.resize(n + VertexNormals<float>::padding, 0.f);
+    place_ = VertexPlaces(n);
     rest();
     if (!p_.normals) return;
-    each_normal([this](std::size_t v, float x, float y, float z) {
-      rest_normal_[0][v] = x;
-      rest_normal_[1][v] = y;
-      rest_normal_[2][v] = z;
-    });
+    each_normal([this](std::size_t v, float x, float y, float z) { rest_normal_[v] = {x, y, z}; });
   }
 
   template <Real T>
   void write_rest(const VertexBuffer<T>& out) noexcept {
     rest();
-    const auto number = [](std::size_t i) { return i; };
-    const std::size_t n = display_.size();
-    detail::store3(out.positions, out.position_stride, n, number, position_[0].data(), position_[1].data(),
-                   position_[2].data());
-    if (p_.normals && out.normals != nullptr)
-      detail::store3(out.normals, out.normal_stride, n, number, rest_normal_[0].data(),
-                     rest_normal_[1].data(), rest_normal_[2].data());
+    const auto store = [n = display_.size()](T* to, std::size_t stride, const Packed3* list) {
+      unsigned char* at = reinterpret_cast<unsigned char*>(to);
+      for (std::size_t v = 0; v < n; ++v, at += stride)
+        detail::put3(at, T(list[v].x), T(list[v].y), T(list[v].z));
+    };
+    store(out.positions, out.position_stride, place_.packed());
+    if (p_.normals && out.normals != nullptr) store(out.normals, out.normal_stride, rest_normal_.data());
   }
 
   /// Writes the shape under `contacts`, unless it is the one already there.
@@ -91,7 +87,7 @@ class ResponseFieldDeformation {
     }
     if (out.positions == nullptr || !is_new(pressed, count)) return moved;
     tick_.solve(pressed.data(), count, forces_.data());
-    Put<T> put(display_, out, p_.normals ? &position_ : nullptr);
+    Put<T> put(display_, out, p_.normals ? &place_ : nullptr);
     tick_.each(display_, put);
     moved.vertices = display_.size();
     if (moved.vertices > 0) {
@@ -100,6 +96,7 @@ class ResponseFieldDeformation {
       moved.upper = Vec3<float>(high.x.maxCoeff(), high.y.maxCoeff(), high.z.maxCoeff()).template cast<S>();
     }
     if (p_.normals && out.normals != nullptr) {
+      place_.complete();
       unsigned char* const base = reinterpret_cast<unsigned char*>(out.normals);
       each_normal([base, stride = out.normal_stride](std::size_t v, float nx, float ny, float nz) {
         detail::put3(base + stride * v, T(nx), T(ny), T(nz));
@@ -124,19 +121,17 @@ class ResponseFieldDeformation {
     const std::uint32_t* vertex;
     unsigned char* to;
     std::size_t stride;
-    float *x = nullptr, *y = nullptr, *z = nullptr;  // by vertex; null: not wanted
+    VertexPlaces* place;  // null: not wanted
     detail::Lane3 low, high;
 
-    Put(const ResponseDisplay& display, const VertexBuffer<T>& out,
-        std::array<std::vector<float>, 3>* position) noexcept
+    Put(const ResponseDisplay& display, const VertexBuffer<T>& out, VertexPlaces* places) noexcept
         : at_x(display.x()),
           at_y(display.y()),
           at_z(display.z()),
           vertex(display.vertex()),
           to(reinterpret_cast<unsigned char*>(out.positions)),
-          stride(out.position_stride) {
-      if (position != nullptr)
-        x = (*position)[0].data(), y = (*position)[1].data(), z = (*position)[2].data();
+          stride(out.position_stride),
+          place(places) {
       const Lane far = Lane::Constant((std::numeric_limits<float>::max)());
       low = {far, far, far};
       high = {-far, -far, -far};
@@ -149,8 +144,8 @@ class ResponseFieldDeformation {
       ResponseTick<Contacts>::put_lanes(vertex + slot, at,
                                         [this](std::size_t v, float px, float py, float pz) {
                                           detail::put3(to + stride * v, T(px), T(py), T(pz));
-                                          if (x != nullptr) x[v] = px, y[v] = py, z[v] = pz;
                                         });
+      if (place != nullptr) place->set4(vertex + slot, at.x.data(), at.y.data(), at.z.data());
     }
   };
 
@@ -174,16 +169,15 @@ class ResponseFieldDeformation {
 
   template <class Emit>
   void each_normal(const Emit& emit) const noexcept {
-    normals_.each_unit(position_[0].data(), position_[1].data(), position_[2].data(), rest_normal_, emit);
+    normals_.each_unit(
+        normals_.all(), place_, [this](std::size_t v) { return rest_normal_[v]; }, emit);
   }
 
   void rest() noexcept {
     last_count_ = 0;
     for (std::size_t slot = 0; slot < display_.slots(); ++slot) {
       const std::uint32_t v = display_.vertex()[slot];
-      position_[0][v] = display_.x()[slot];
-      position_[1][v] = display_.y()[slot];
-      position_[2][v] = display_.z()[slot];
+      place_.set(v, display_.x()[slot], display_.y()[slot], display_.z()[slot]);
     }
   }
 
@@ -191,9 +185,9 @@ class ResponseFieldDeformation {
   std::shared_ptr<const ResponseField> field_;
   ResponseDisplay display_;
   ResponseTick<Contacts> tick_;
-  VertexNormals<float> normals_;
-  std::array<std::vector<float>, 3> position_;  // by vertex, now
-  std::array<std::vector<float>, 3> rest_normal_;
+  VertexNormals normals_;
+  VertexPlaces place_;  // now
+  std::vector<Packed3> rest_normal_;
   std::array<ResponseContact<S>, Contacts> last_{};
   std::size_t last_count_ = 0;
   std::array<Vec3<S>, Contacts> forces_{};

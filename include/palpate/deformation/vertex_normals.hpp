@@ -4,48 +4,83 @@
 /// @file  Area-weighted vertex normals of a closed mesh whose vertices move.
 
 #include <palpate/core/error.hpp>
-#include <palpate/interpolation/concept.hpp>
+#include <palpate/core/float_vector.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 namespace palpate {
 
-/// The ring of neighbours p_0 .. p_{m-1} of every vertex, counter-clockwise from outside. The area vectors of a
-/// vertex's triangles sum to that of its ring, a closed polygon, in which the vertex itself cancels. Cut into
-/// quadrilaterals from o = p_{m-1} it is (m even; otherwise p_{m-1} counts twice)
-///
-///     2 A = sum_{j < m/2 - 1} (p_{2j+1} - o) x (p_{2j+2} - p_{2j})
-///
-/// two cross products for six neighbours instead of six, and every product is of short vectors. No equation of the
-/// paper; elementary geometry.
-///
-/// Up to `lanes` neighbouring vertices whose rings are the same but for a shift by one are a run, and one
-/// calculation without gathering. In a mesh laid out in rows, as all meshes of this library are, most vertices are
-/// in full runs.
-///
-/// Set-up reports a mesh whose triangles do not close around every vertex.
-template <Real S>
-class VertexNormals {
+/// A place [m] or a normal in one register's worth of memory.
+struct alignas(16) Packed3 {
+  float x = 0, y = 0, z = 0, unused = 0;
+};
+
+/// Places of all vertices as `VertexNormals` reads them: one by one, and coordinate by coordinate [m].
+class VertexPlaces {
  public:
-  static constexpr std::size_t lanes = detail::lanes<S>;
-  /// So many entries past the last vertex's coordinates are read, and not used.
-  static constexpr std::size_t padding = lanes;
+  VertexPlaces() = default;
+  explicit VertexPlaces(std::size_t vertices) : packed_((vertices + 3) / 4 * 4) {
+    for (auto& list : axis_) list.resize(packed_.size() + 7);
+  }
 
-  struct Run {
-    std::uint32_t first = 0, count = 0;  ///< vertices, up to `lanes`
-    std::uint32_t ring = 0, size = 0;    ///< of the first one: where its neighbours are listed, and how many
-  };
+  [[nodiscard]] const Packed3* packed() const noexcept { return packed_.data(); }
+  /// What lies past the last vertex may be read.
+  [[nodiscard]] const float* axis(std::size_t i) const noexcept { return axis_[i].data(); }
 
-  VertexNormals() = default;
+  void set(std::size_t v, float x, float y, float z) noexcept {
+    packed_[v] = {x, y, z};
+    axis_[0][v] = x, axis_[1][v] = y, axis_[2][v] = z;
+  }
+  /// Four in a row, from v on, perhaps past the last vertex if v is a multiple of 4.
+  PALPATE_INLINE void set4(std::size_t v, const float* x, const float* y, const float* z) noexcept {
+    detail::store(&axis_[0][v], detail::load4(x));
+    detail::store(&axis_[1][v], detail::load4(y));
+    detail::store(&axis_[2][v], detail::load4(z));
+    pack(x, y, z, [v](std::size_t k) { return v + k; });
+  }
+  /// Four anywhere. `complete()` when all are there.
+  PALPATE_INLINE void set4(const std::uint32_t* v, const float* x, const float* y, const float* z) noexcept {
+    pack(x, y, z, [v](std::size_t k) { return v[k]; });
+  }
+  void complete() noexcept {
+    for (std::size_t v = 0; v < packed_.size(); v += 4) {
+      detail::Float4 a = detail::load4(&packed_[v].x), b = detail::load4(&packed_[v + 1].x),
+                     c = detail::load4(&packed_[v + 2].x), d = detail::load4(&packed_[v + 3].x);
+      detail::transpose(a, b, c, d);
+      detail::store(&axis_[0][v], a);
+      detail::store(&axis_[1][v], b);
+      detail::store(&axis_[2][v], c);
+    }
+  }
 
-  /// No run goes on past a vertex of `starts`, which is in ascending order.
-  VertexNormals(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertices,
-                std::span<const std::size_t> starts = {}) {
+ private:
+  template <class At>
+  PALPATE_INLINE void pack(const float* x, const float* y, const float* z, const At& at) noexcept {
+    detail::Float4 a = detail::load4(x), b = detail::load4(y), c = detail::load4(z), d{};
+    detail::transpose(a, b, c, d);
+    Packed3* const to = packed_.data();
+    detail::store(&to[at(0)].x, a);
+    detail::store(&to[at(1)].x, b);
+    detail::store(&to[at(2)].x, c);
+    detail::store(&to[at(3)].x, d);
+  }
+
+  std::vector<Packed3> packed_;
+  std::array<std::vector<float>, 3> axis_;
+};
+
+/// The ring of neighbours p_0 .. p_{m-1} of every vertex of a closed mesh, counter-clockwise from outside, lowest first; an even number: the
+/// last one twice, if need be. Set-up only. Reports a mesh whose triangles do not close around every vertex.
+class VertexRings {
+ public:
+  VertexRings(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertices) {
     std::vector<std::vector<std::array<std::uint32_t, 2>>> sides(vertices);
     for (std::size_t t = 0; t < triangles.size(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
@@ -54,135 +89,29 @@ class VertexNormals {
         sides[a].push_back({b, c});
       }
     }
-    std::vector<std::uint32_t> ring;
+    begin_.reserve(vertices + 1);
     for (std::size_t v = 0; v < vertices; ++v) {
-      ring_of(sides[v], v, ring);
-      if (!std::binary_search(starts.begin(), starts.end(), v) && goes_on(ring)) {
-        ++runs_.back().count;
-      } else {
-        runs_.push_back({static_cast<std::uint32_t>(v), 1, static_cast<std::uint32_t>(rings_.size()),
-                         static_cast<std::uint32_t>(ring.size())});
-        rings_.insert(rings_.end(), ring.begin(), ring.end());
-      }
+      begin_.push_back(rings_.size());
+      add(sides[v], v);
     }
+    begin_.push_back(rings_.size());
   }
 
-  /// All runs, in the vertices' order.
-  [[nodiscard]] std::span<const Run> runs() const noexcept { return runs_; }
-  /// Neighbours of a run's first vertex; those of the next one are one further each.
-  [[nodiscard]] std::span<const std::uint32_t> ring(const Run& run) const noexcept {
-    return {rings_.data() + run.ring, run.size};
-  }
-
-  /// Twice the area vectors of the rings of `lanes` vertices from number `offset` of the run on; their directions are the
-  /// normals. Past the run's end they mean nothing. `x`, `y`, `z`: the vertices' coordinates.
-  void area(const Run& run, std::size_t offset, const S* x, const S* y, const S* z, S* out_x, S* out_y,
-            S* out_z) const noexcept {
-    using detail::load_lanes;
-    using Lanes = detail::Lanes<S>;
-    const std::uint32_t* const r = rings_.data() + run.ring;
-    x += offset, y += offset, z += offset;
-    const std::uint32_t last = r[run.size - 1];
-    const Lanes ox = load_lanes(x + last), oy = load_lanes(y + last), oz = load_lanes(z + last);
-    Lanes px = load_lanes(x + r[0]), py = load_lanes(y + r[0]), pz = load_lanes(z + r[0]);
-    Lanes sx = Lanes::Zero(), sy = Lanes::Zero(), sz = Lanes::Zero();
-    const auto pair = [&](std::size_t j) {
-      const std::uint32_t q = r[j + 1], s = r[j + 2];
-      const Lanes nx = load_lanes(x + s), ny = load_lanes(y + s), nz = load_lanes(z + s);
-      const Lanes ax = load_lanes(x + q) - ox, ay = load_lanes(y + q) - oy, az = load_lanes(z + q) - oz,
-                  bx = nx - px, by = ny - py, bz = nz - pz;
-      sx += ay * bz - az * by;
-      sy += az * bx - ax * bz;
-      sz += ax * by - ay * bx;
-      px = nx, py = ny, pz = nz;
-    };
-    pair(0);
-    if (run.size == 6) {  // as nearly all are
-      pair(2);
-    } else {
-      for (std::size_t j = 2; j + 2 < run.size; j += 2) pair(j);
-    }
-    detail::store_lanes(out_x, sx);
-    detail::store_lanes(out_y, sy);
-    detail::store_lanes(out_z, sz);
-  }
-
-  /// Unit normals in the making, a block of vertices at a time. `x`, `y`, `z`: the vertices' coordinates; rest(axis, vertex):
-  /// component of the normal of a vertex whose ring has collapsed; emit(vertex, x, y, z) takes the results.
-  template <class Rest, class Emit>
-  class Units {
-   public:
-    Units(const VertexNormals& normals, const S* x, const S* y, const S* z, const Rest& rest,
-          const Emit& emit) noexcept
-        : normals_(normals), x_(x), y_(y), z_(z), rest_(rest), emit_(emit) {}
-
-    /// `count` vertices from number `offset` of the run on.
-    PALPATE_INLINE void add(const Run& run, std::uint32_t offset, std::size_t count) noexcept {
-      if (filled_ + lanes > block_size) flush();
-      normals_.area(run, offset, x_, y_, z_, nx_.value + filled_, ny_.value + filled_, nz_.value + filled_);
-      for (std::uint32_t i = 0; i < lanes; ++i) vertex_[filled_ + i] = run.first + offset + i;
-      filled_ += count;
-    }
-    /// Emits what has been added.
-    void flush() noexcept {
-      constexpr S tiny = (std::numeric_limits<S>::min)();
-      Block<S> square;
-      for (std::size_t i = 0; i < block_size; ++i)
-        square[i] = nx_[i] * nx_[i] + ny_[i] * ny_[i] + nz_[i] * nz_[i];
-      for (std::size_t i = 0; i < block_size; ++i) {
-        const S scale = detail::inverse_root(square[i]);
-        nx_[i] *= scale;
-        ny_[i] *= scale;
-        nz_[i] *= scale;
-      }
-      for (std::size_t i = filled_; i < block_size; ++i) square[i] = S(1);
-      const bool collapsed = detail::least(square) <= tiny;
-      for (std::size_t i = 0; collapsed && i < filled_; ++i) {
-        if (square[i] > tiny) continue;
-        nx_[i] = rest_(0, vertex_[i]);
-        ny_[i] = rest_(1, vertex_[i]);
-        nz_[i] = rest_(2, vertex_[i]);
-      }
-      // In registers: what emit writes might be any of these otherwise.
-      const Emit emit = emit_;
-      const std::size_t filled = filled_;
-      for (std::size_t i = 0; i < filled; ++i) emit(vertex_[i], nx_[i], ny_[i], nz_[i]);
-      filled_ = 0;
-    }
-
-   private:
-    const VertexNormals& normals_;
-    const S *x_, *y_, *z_;
-    const Rest& rest_;
-    const Emit& emit_;
-    Block<S> nx_{}, ny_{}, nz_{};
-    std::array<std::uint32_t, block_size> vertex_{};
-    std::size_t filled_ = 0;
-  };
-
-  /// emit(vertex, x, y, z) with every vertex's unit normal; one whose ring has collapsed has `rest`, its three lists of
-  /// components.
-  template <class Emit>
-  PALPATE_FLATTEN void each_unit(const S* x, const S* y, const S* z,
-                                 const std::array<std::vector<S>, 3>& rest, const Emit& emit) const noexcept {
-    const auto at_rest = [&rest](std::size_t axis, std::size_t v) { return rest[axis][v]; };
-    Units<decltype(at_rest), Emit> units(*this, x, y, z, at_rest, emit);
-    for (const Run& run : runs_) units.add(run, 0, run.count);
-    units.flush();
+  [[nodiscard]] std::size_t size() const noexcept { return begin_.size() - 1; }
+  [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t v) const noexcept {
+    return {rings_.data() + begin_[v], begin_[v + 1] - begin_[v]};
   }
 
  private:
   static constexpr const char* name = "VertexNormals";
 
-  // The neighbours of vertex v in order, lowest first, so that shifted rings begin alike; an even number of them.
-  static void ring_of(std::span<const std::array<std::uint32_t, 2>> open, std::size_t v,
-                      std::vector<std::uint32_t>& ring) {
+  // `open`: of each triangle around vertex v the other two vertices.
+  void add(std::span<const std::array<std::uint32_t, 2>> open, std::size_t v) {
     const auto fan = [v] { fail_at(name, "triangles must close around it", "mesh vertex", v); };
-    ring.clear();
     if (open.size() < 3) fan();
     std::uint32_t at = open[0][0];
     for (std::size_t k = 0; k < open.size(); ++k) {
-      ring.push_back(at);
+      rings_.push_back(at);
       std::size_t found = open.size();
       for (std::size_t j = 0; j < open.size(); ++j) {
         if (open[j][0] != at) continue;
@@ -194,20 +123,211 @@ class VertexNormals {
       if (at == open[0][0] && k + 1 < open.size()) fan();
     }
     if (at != open[0][0]) fan();
-    std::rotate(ring.begin(), std::min_element(ring.begin(), ring.end()), ring.end());
-    if (ring.size() % 2 != 0) ring.push_back(ring.back());
+    const auto begin = rings_.end() - static_cast<std::ptrdiff_t>(open.size());
+    std::rotate(begin, std::min_element(begin, rings_.end()), rings_.end());
+    if (open.size() % 2 != 0) rings_.push_back(rings_.back());
   }
 
-  [[nodiscard]] bool goes_on(std::span<const std::uint32_t> next) const noexcept {
-    if (runs_.empty() || runs_.back().count == lanes || next.size() != runs_.back().size) return false;
-    for (std::size_t k = 0; k < next.size(); ++k) {
-      if (next[k] != rings_[runs_.back().ring + k] + runs_.back().count) return false;
+  std::vector<std::uint32_t> rings_;
+  std::vector<std::size_t> begin_;
+};
+
+/// The area vectors of a vertex's triangles sum to that of its ring, a closed polygon, in which the vertex itself cancels.
+/// Cut into quadrilaterals from o = p_{m-1} it is
+///
+///     2 A = sum_{j < m/2 - 1} (p_{2j+1} - o) x (p_{2j+2} - p_{2j})
+///
+/// two cross products for six neighbours instead of six, and every product is of short vectors. No equation of the
+/// paper; elementary geometry.
+///
+/// In float, whatever the scalar: a place 0.1 m from the origin is known to 4 nm, and a normal between edges of 1 mm to
+/// 1e-5 rad; no display shows more.
+///
+/// Eight vertices in a row whose rings are the same but for a shift by one are done coordinate by coordinate, as most are in a
+/// mesh laid out in rows; the others by fours with rings of one size, wherever they are.
+class VertexNormals {
+ public:
+  /// Vertices that are done together.
+  struct Group {
+    std::uint32_t row_begin = 0, row_end = 0, four_begin = 0, four_end = 0;
+  };
+
+  VertexNormals() = default;
+  /// One group of all vertices, `all()`.
+  explicit VertexNormals(const VertexRings& rings) {
+    std::vector<std::uint32_t> vertices(rings.size());
+    std::iota(vertices.begin(), vertices.end(), 0u);
+    add(rings, vertices);
+  }
+  /// Makes a group of vertices, in ascending order, ready. Set-up only.
+  Group add(const VertexRings& rings, const std::vector<std::uint32_t>& vertices) {
+    const Group before = all();
+    std::vector<std::uint32_t> others;
+    for (std::size_t i = 0; i < vertices.size();) {
+      if (i + in_row <= vertices.size() && is_row(rings, &vertices[i])) {
+        rows_.push_back({vertices[i], list(rings[vertices[i]], 1), size_of(rings[vertices[i]])});
+        i += in_row;
+      } else {
+        others.push_back(vertices[i++]);
+      }
+    }
+    std::stable_sort(others.begin(), others.end(),
+                     [&rings](auto l, auto r) { return rings[l].size() < rings[r].size(); });
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      Four four{{}, static_cast<std::uint32_t>(rings_.size()), size_of(rings[others[i]])};
+      for (std::uint32_t& v : four.vertex) {
+        v = others[i];  // the last of its size as often as it takes
+        list(rings[v], floats);
+        if (&v != &four.vertex[3] && i + 1 < others.size() && rings[others[i + 1]].size() == four.size) ++i;
+      }
+      fours_.push_back(four);
+    }
+    const Group after = all();
+    return {before.row_end, after.row_end, before.four_end, after.four_end};
+  }
+  /// All groups.
+  [[nodiscard]] Group all() const noexcept {
+    return {0, static_cast<std::uint32_t>(rows_.size()), 0, static_cast<std::uint32_t>(fours_.size())};
+  }
+
+  /// emit(vertex, x, y, z) with the unit normal of every vertex of the group, of some more than once. One whose ring has
+  /// collapsed has the normal rest(vertex).
+  template <class Rest, class Emit>
+  PALPATE_FLATTEN void each_unit(const Group& group, const VertexPlaces& places, const Rest& rest,
+                                 const Emit& emit) const noexcept {
+    constexpr float much = (std::numeric_limits<float>::max)();
+    detail::Float4 least{much, much, much, much};  // square of an area
+    const Emit put = emit;  // in registers: what it writes might be any of it otherwise
+    each_area(group, places, [&](const auto& vertex, auto& x, auto& y, auto& z) {
+      using Register = std::remove_reference_t<decltype(x)>;
+      const Register square = x * x + y * y + z * z;
+      detail::take_least(least, square);
+      Register scale;
+      detail::inverse_root(square, scale);
+      x *= scale, y *= scale, z *= scale;
+      for (std::uint32_t k = 0; k < sizeof(Register) / sizeof(float); ++k) put(vertex(k), x[k], y[k], z[k]);
+    });
+    if ((std::min)({least[0], least[1], least[2], least[3]}) > collapsed) return;
+    each_area(group, places, [&](const auto& vertex, auto& x, auto& y, auto& z) {
+      const auto square = x * x + y * y + z * z;
+      for (std::uint32_t k = 0; k < sizeof x / sizeof(float); ++k) {
+        if (square[k] > collapsed) continue;
+        const Packed3 normal = rest(vertex(k));
+        emit(vertex(k), normal.x, normal.y, normal.z);
+      }
+    });
+  }
+
+ private:
+  struct Row {
+    std::uint32_t vertex, ring, size;  // of the first one: its number, and where its neighbours' are listed
+  };
+  struct Four {
+    std::array<std::uint32_t, 4> vertex;
+    std::uint32_t ring, size;  // where the first one's neighbours' places are listed; the others follow
+  };
+  static constexpr float collapsed = (std::numeric_limits<float>::min)();  // square of an area
+  static constexpr std::uint32_t in_row = 8, floats = sizeof(Packed3) / sizeof(float);
+
+  [[nodiscard]] static std::uint32_t size_of(std::span<const std::uint32_t> ring) {
+    return static_cast<std::uint32_t>(ring.size());
+  }
+  std::uint32_t list(std::span<const std::uint32_t> ring, std::uint32_t unit) {
+    const auto begin = static_cast<std::uint32_t>(rings_.size());
+    for (const std::uint32_t neighbour : ring) rings_.push_back(unit * neighbour);
+    return begin;
+  }
+  [[nodiscard]] static bool is_row(const VertexRings& rings, const std::uint32_t* vertex) {
+    const auto first = rings[vertex[0]];
+    for (std::uint32_t k = 1; k < in_row; ++k) {
+      const auto next = rings[vertex[k]];
+      if (vertex[k] != vertex[0] + k || next.size() != first.size()) return false;
+      for (std::size_t j = 0; j < first.size(); ++j)
+        if (next[j] != first[j] + k) return false;
     }
     return true;
   }
 
-  std::vector<Run> runs_;
-  std::vector<std::uint32_t> rings_;
+  // 2 A in the order z, x, y.
+  [[nodiscard]] static PALPATE_INLINE detail::Float4 area(const float* p, const std::uint32_t* ring,
+                                                          std::uint32_t size) noexcept {
+    using detail::Float4, detail::load4, detail::rotated;
+    const Float4 o = load4(p + ring[size - 1]);
+    Float4 here = load4(p + ring[0]), sum{};
+    for (std::uint32_t j = 0; j + 2 < size; j += 2) {
+      const Float4 next = load4(p + ring[j + 2]), a = load4(p + ring[j + 1]) - o, b = next - here;
+      sum += a * rotated(b) - rotated(a) * b;
+      here = next;
+    }
+    return sum;
+  }
+  // 2 A of a register's worth of a row.
+  template <class V>
+  static PALPATE_INLINE void area(const float* px, const float* py, const float* pz,
+                                  const std::uint32_t* ring, std::uint32_t size, V& x, V& y, V& z) noexcept {
+    using detail::load;
+    V ox, oy, oz, hx, hy, hz;
+    const std::uint32_t last = ring[size - 1], first = ring[0];
+    load(ox, px + last), load(oy, py + last), load(oz, pz + last);
+    load(hx, px + first), load(hy, py + first), load(hz, pz + first);
+    V sx{}, sy{}, sz{};
+    for (std::uint32_t j = 0; j + 2 < size; j += 2) {
+      const std::uint32_t q = ring[j + 1], s = ring[j + 2];
+      V ax, ay, az, nx, ny, nz;
+      load(ax, px + q), load(ay, py + q), load(az, pz + q);
+      load(nx, px + s), load(ny, py + s), load(nz, pz + s);
+      ax -= ox, ay -= oy, az -= oz;
+      const V bx = nx - hx, by = ny - hy, bz = nz - hz;
+      sx += ay * bz - az * by;
+      sy += az * bx - ax * bz;
+      sz += ax * by - ay * bx;
+      hx = nx, hy = ny, hz = nz;
+    }
+    x = sx, y = sy, z = sz;
+  }
+
+  // work(vertex, x, y, z) with 2 A of the vertices vertex(0), vertex(1) ..
+  template <class Work>
+  PALPATE_INLINE void each_area(const Group& group, const VertexPlaces& places,
+                                const Work& work) const noexcept {
+    using detail::Float4, detail::FloatRegister;
+    const auto with_size = [](std::uint32_t size, const auto& sum) {
+      if (size == 6)  // as nearly all are
+        sum(std::integral_constant<std::uint32_t, 6>{});
+      else
+        sum(size);
+    };
+    const std::uint32_t* const rings = rings_.data();
+    const float *const px = places.axis(0), *const py = places.axis(1), *const pz = places.axis(2);
+    for (const Row *at = rows_.data() + group.row_begin, *const end = rows_.data() + group.row_end; at < end;
+         ++at) {
+      const Row row = *at;
+      for (std::uint32_t from = 0; from < in_row; from += sizeof(FloatRegister) / sizeof(float)) {
+        FloatRegister x, y, z;
+        with_size(row.size,
+                  [&](auto size) { area(px + from, py + from, pz + from, rings + row.ring, size, x, y, z); });
+        work([first = row.vertex + from](std::uint32_t k) { return first + k; }, x, y, z);
+      }
+    }
+    const float* const p = &places.packed()->x;
+    for (const Four *at = fours_.data() + group.four_begin, *const end = fours_.data() + group.four_end;
+         at < end; ++at) {
+      const Four four = *at;
+      const std::uint32_t* const ring = rings + four.ring;
+      Float4 z, x, y, last;
+      with_size(four.size, [&](auto size) {
+        z = area(p, ring, size), x = area(p, ring + size, size), y = area(p, ring + 2 * size, size);
+        last = area(p, ring + 3 * size, size);
+      });
+      detail::transpose(z, x, y, last);
+      work([&four](std::uint32_t k) { return four.vertex[k]; }, x, y, z);
+    }
+  }
+
+  std::vector<Row> rows_;
+  std::vector<Four> fours_;
+  std::vector<std::uint32_t>
+      rings_;  // vertices' numbers; of fours, where their packed places begin, in floats
 };
 
 }  // namespace palpate

@@ -27,8 +27,7 @@ struct alignas(64) Block {
 namespace detail {
 
 /// One or two vector registers' worth of a block; a block is a whole number of them. For what compilers leave scalar at -O2:
-/// minima and maxima, short loops, addresses they cannot tell apart. The same whatever the vector flags: runs that one file set up
-/// (`VertexNormals`) are walked by another.
+/// minima and maxima, short loops, addresses they cannot tell apart. The same whatever the vector flags.
 template <Real S>
 inline constexpr std::size_t lanes = 32 / sizeof(S);
 template <Real S>

@@ -56,7 +56,7 @@ TEST_CASE("rest shape: the mesh to the bit, and unit normals that point outward"
   field.write_rest(out.view);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     CHECK(out.position(i) == mesh.vertices[i]);
-    CHECK_ABSOLUTE(out.normal(i).norm(), 1, ulps<double>(4));
+    CHECK_ABSOLUTE(out.normal(i).norm(), 1, ulps<float>(4));  // normals are worked out in float
     CHECK(out.normal(i).dot(ellipsoid.closest(mesh.vertices[i]).normal) > 0.98);
   }
 }
@@ -151,8 +151,9 @@ TEST_CASE("normals are area-weighted over the displaced triangles") {
         (out.position(t[1]) - out.position(t[0])).cross(out.position(t[2]) - out.position(t[0]));
     for (const std::uint32_t v : t) sum[v] += area;
   }
-  // Edges of 3 mm between places of 30 mm: 10 ulp, times a few.
-  for (std::size_t i = 0; i < sum.size(); ++i) CHECK((out.normal(i) - sum[i].normalized()).norm() <= 1e-13);
+  // Worked out in float, edges of 3 mm between places of 30 mm: 10 ulp, times a few.
+  for (std::size_t i = 0; i < sum.size(); ++i)
+    CHECK((out.normal(i) - sum[i].normalized()).norm() <= ulps<float>(40));
 }
 
 TEST_CASE("strides and float buffers: the same numbers at their places, nothing between them touched") {

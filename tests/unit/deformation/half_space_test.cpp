@@ -41,13 +41,21 @@ struct Drawn {
 
   template <class Fixed>
   Drawn(const MeshData<double>& m, const Fixed& fixed, double nu = 0.49)
-      : mesh(m), model(mesh, fixed, {.nu = nu}), position(mesh.vertices.size()), normal(mesh.vertices.size()) {
+      : mesh(m),
+        model(mesh, fixed, {.nu = nu}),
+        position(mesh.vertices.size()),
+        normal(mesh.vertices.size()) {
     model.write_rest(buffer());
   }
   VertexBuffer<double> buffer() {
-    return {.positions = position[0].data(), .position_stride = sizeof(V), .normals = normal[0].data(), .normal_stride = sizeof(V)};
+    return {.positions = position[0].data(),
+            .position_stride = sizeof(V),
+            .normals = normal[0].data(),
+            .normal_stride = sizeof(V)};
   }
-  Moved<double> write(const std::vector<ContactState<double>>& contacts) { return model.write(std::span(contacts), buffer()); }
+  Moved<double> write(const std::vector<ContactState<double>>& contacts) {
+    return model.write(std::span(contacts), buffer());
+  }
   V u(std::size_t v) const { return position[v] - mesh.vertices[v]; }
   double most() const {
     double most = 0;
@@ -61,14 +69,17 @@ const ContactState<double> top = pressed<double>(V(0, 0.04, 0), V::UnitY(), V(0,
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("half-spaces: the fixed region stays, the contact moves by D, the same contacts move nothing", S, float, double) {
+TEST_CASE_TEMPLATE(
+    "half-spaces: the fixed region stays, the contact moves by D, the same contacts move nothing", S, float,
+    double) {
   const MeshData<double> wide = test::ellipsoid_mesh(axes, 14);
   MeshData<S> mesh;
   for (const V& v : wide.vertices) mesh.vertices.push_back(v.cast<S>());
   mesh.triangles = wide.triangles;
   HalfSpaceDeformation<S> model(mesh, cap, {.nu = S(0.49)});
   std::vector<float> out(6 * mesh.vertices.size());  // interleaved
-  const VertexBuffer<float> buffer{.positions = out.data(), .position_stride = 24, .normals = out.data() + 3, .normal_stride = 24};
+  const VertexBuffer<float> buffer{
+      .positions = out.data(), .position_stride = 24, .normals = out.data() + 3, .normal_stride = 24};
   model.write_rest(buffer);
   const std::vector<ContactState<S>> contacts{
       pressed<S>(Vec3<S>(0, S(0.04), 0), Vec3<S>::UnitY(), Vec3<S>(0, S(-0.002), 0), S(0.005))};
@@ -77,7 +88,8 @@ TEST_CASE_TEMPLATE("half-spaces: the fixed region stays, the contact moves by D,
   CHECK(heap.allocations() == 0);
   CHECK(moved.vertices == mesh.vertices.size());
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    const Vec3<float> now(out[6 * v], out[6 * v + 1], out[6 * v + 2]), rest = mesh.vertices[v].template cast<float>();
+    const Vec3<float> now(out[6 * v], out[6 * v + 1], out[6 * v + 2]),
+        rest = mesh.vertices[v].template cast<float>();
     const Vec3<S> u = (now - rest).template cast<S>();
     if (cap(mesh.vertices[v])) CHECK(now == rest);
     const Vec3<float> n(out[6 * v + 3], out[6 * v + 4], out[6 * v + 5]);
@@ -107,7 +119,8 @@ TEST_CASE("half-spaces: linear in D, and lengths scale") {
   two.write({deeper});
   ten.write({pressed<double>(V(0, 0.4, 0), V::UnitY(), V(0, -0.02, 0), 0.05)});
   CHECK_RELATIVE(two.model.forces()[0].norm(), 2 * one.model.forces()[0].norm(), 1e-12L);
-  CHECK_RELATIVE(ten.model.forces()[0].norm(), 100 * one.model.forces()[0].norm(), 1e-9L);  // mesh places in float
+  CHECK_RELATIVE(ten.model.forces()[0].norm(), 100 * one.model.forces()[0].norm(),
+                 1e-9L);  // mesh places in float
   for (std::size_t v = 0; v < one.position.size(); ++v) {
     // Places are kept in float: 4e-9 m at 0.06 m, and ten times that.
     CHECK((two.u(v) - 2 * one.u(v)).norm() < 4e-8);
@@ -121,16 +134,20 @@ TEST_CASE("half-spaces: turned body and contact, turned field") {
   MeshData<double> turned = one.mesh;
   for (V& v : turned.vertices) v = turn * v;
   Drawn other(turned, [&](const V& p) { return (turn.transpose() * p).y() <= -0.036 + 1e-12; });
-  const V place(0.03, 0.04 * std::sqrt(0.75), 0), n = V(place.x() / 0.0036, place.y() / 0.0016, 0).normalized(), D = -0.002 * n + V(0, 0, 0.001);
+  const V place(0.03, 0.04 * std::sqrt(0.75), 0),
+      n = V(place.x() / 0.0036, place.y() / 0.0016, 0).normalized(), D = -0.002 * n + V(0, 0, 0.001);
   one.write({pressed<double>(place, n, D, 0.004)});
   other.write({pressed<double>(turn * place, turn * n, turn * D, 0.004)});
-  CHECK((other.model.forces()[0] - turn * one.model.forces()[0]).norm() < 1e-6 * one.model.forces()[0].norm());
-  for (std::size_t v = 0; v < one.position.size(); ++v) CHECK((other.u(v) - turn * one.u(v)).norm() < 4e-8);  // floats
+  CHECK((other.model.forces()[0] - turn * one.model.forces()[0]).norm() <
+        1e-6 * one.model.forces()[0].norm());
+  for (std::size_t v = 0; v < one.position.size(); ++v)
+    CHECK((other.u(v) - turn * one.u(v)).norm() < 4e-8);  // floats
 }
 
 TEST_CASE("half-spaces: a contact that appears without force changes nothing, and none pulls") {
   Drawn alone = egg(), both = egg();
-  const V place(0.03, 0.04 * std::sqrt(0.75), 0), n = V(place.x() / 0.0036, place.y() / 0.0016, 0).normalized();
+  const V place(0.03, 0.04 * std::sqrt(0.75), 0),
+      n = V(place.x() / 0.0036, place.y() / 0.0016, 0).normalized();
   alone.write({top});
   both.write({top, pressed<double>(place, n, V::Zero(), 0.002)});
   CHECK(both.model.forces()[1].norm() == 0);
@@ -142,7 +159,9 @@ TEST_CASE("half-spaces: a contact that appears without force changes nothing, an
   CHECK(both.model.forces()[0].norm() < alone.model.forces()[0].norm());
 }
 
-TEST_CASE("half-spaces against nonlinear finite elements: within 20 % of the displacement, without any set-up solve") {
+TEST_CASE(
+    "half-spaces against nonlinear finite elements: within 20 % of the displacement, without any set-up "
+    "solve") {
   // Model error, not code error: what this rung is good for. The skeleton's is above 100 % here.
   Drawn drawn(test::ellipsoid_mesh(axes, 40), cap);
   drawn.write({pressed<double>(V(0, 0.04, 0), V::UnitY(), V(0, -0.004, 0), 0.005)});
@@ -173,11 +192,14 @@ TEST_CASE("half-spaces: the field is continuous while a contact wanders") {
   for (int i = 0; i < 400; ++i) {
     speed = 0.95 * speed + 0.3 * V(normal(random), normal(random), normal(random));
     direction = (direction + 2e-3 * speed).normalized();
-    if (direction.y() < -0.5) direction.y() = -direction.y(), direction.normalize(), speed.y() = std::abs(speed.y());
-    const V place = direction / direction.cwiseQuotient(axes).norm(), n = place.cwiseQuotient(axes.cwiseAbs2()).normalized();
+    if (direction.y() < -0.5)
+      direction.y() = -direction.y(), direction.normalize(), speed.y() = std::abs(speed.y());
+    const V place = direction / direction.cwiseQuotient(axes).norm(),
+            n = place.cwiseQuotient(axes.cwiseAbs2()).normalized();
     drawn.write({pressed<double>(place, n, V(-0.002 * n), 0.004 + 0.001 * std::sin(0.05 * i))});
     double change = 0;
-    for (std::size_t v = 0; v < before.size(); ++v) change = (std::max)(change, (drawn.position[v] - before[v]).norm());
+    for (std::size_t v = 0; v < before.size(); ++v)
+      change = (std::max)(change, (drawn.position[v] - before[v]).norm());
     if (i > 0 && direction.y() > -0.45) largest = (std::max)(largest, change / 0.002);
     before = drawn.position;
   }
@@ -196,15 +218,18 @@ TEST_CASE("half-spaces: bad input") {
     }
     return "accepted";
   };
-  CHECK(refusal([&] { HalfSpaceDeformation<double>(mesh, cap, {.nu = 0.6}); }) == "HalfSpaceDeformation: nu must be in [0, 1/2], got 0.6");
+  CHECK(refusal([&] { HalfSpaceDeformation<double>(mesh, cap, {.nu = 0.6}); }) ==
+        "HalfSpaceDeformation: nu must be in [0, 1/2], got 0.6");
   CHECK(refusal([&] { HalfSpaceDeformation<double>(mesh, cap, {.smallest_radius = 0}); }) ==
         "HalfSpaceDeformation: smallest_radius [m] must be > 0, got 0");
   CHECK(refusal([&] { HalfSpaceDeformation<double>(mesh, [](const V&) { return false; }); }) ==
         "HalfSpaceDeformation: the fixed region must hold at least one triangle");
-  CHECK(refusal([&] { HalfSpaceDeformation<double>(MeshData<double>{}, cap); }) == "HalfSpaceDeformation: needs a mesh with triangles");
+  CHECK(refusal([&] { HalfSpaceDeformation<double>(MeshData<double>{}, cap); }) ==
+        "HalfSpaceDeformation: needs a mesh with triangles");
   MeshData<double> broken = mesh;
   broken.vertices[3].x() = std::numeric_limits<double>::quiet_NaN();
-  CHECK(refusal([&] { HalfSpaceDeformation<double>(broken, cap); }) == "HalfSpaceDeformation: place must be finite, at mesh vertex 3");
+  CHECK(refusal([&] { HalfSpaceDeformation<double>(broken, cap); }) ==
+        "HalfSpaceDeformation: place must be finite, at mesh vertex 3");
 
   Drawn drawn = egg();
   ContactState<double> bad = top;

@@ -9,91 +9,99 @@
 
 #include <algorithm>
 #include <random>
+#include <set>
 
 using namespace palpate;
 using palpate::test::ulps;
 
 namespace {
 
-// Coordinate by coordinate, with the room behind them that VertexNormals reads.
 template <Real S>
-struct Places {
-  std::vector<S> x, y, z;
-  std::size_t size = 0;
-  explicit Places(std::size_t count) : x(count + VertexNormals<S>::padding), y(x.size()), z(x.size()) {}
-  void push_back(const Vec3<S>& v) { x[size] = v.x(), y[size] = v.y(), z[size] = v.z(), ++size; }
-  Vec3<S> operator[](std::size_t i) const { return Vec3<S>(x[i], y[i], z[i]); }
-};
-
-template <Real S>
-std::vector<Vec3<S>> areas_of(const VertexNormals<S>& normals, const Places<S>& places) {
-  constexpr std::size_t lanes = VertexNormals<S>::lanes;
-  std::vector<Vec3<S>> areas;
-  for (const auto& run : normals.runs()) {
-    S x[lanes], y[lanes], z[lanes];
-    normals.area(run, 0, places.x.data(), places.y.data(), places.z.data(), x, y, z);
-    for (std::size_t i = 0; i < run.count; ++i) areas.emplace_back(x[i], y[i], z[i]);
+VertexPlaces places_of(const MeshData<S>& mesh) {
+  VertexPlaces places(mesh.vertices.size());
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    const Vec3<float> at = mesh.vertices[v].template cast<float>();
+    places.set(v, at.x(), at.y(), at.z());
   }
-  return areas;
+  return places;
+}
+
+constexpr float nowhere = 7;
+std::vector<Vec3<float>> unit_normals(const VertexNormals& normals, const VertexNormals::Group& group,
+                                      const VertexPlaces& places, std::size_t count) {
+  std::vector<Vec3<float>> out(count, Vec3<float>::Constant(nowhere));
+  normals.each_unit(
+      group, places,
+      [](std::size_t) {
+        return Packed3{0, 0, 2};
+      },
+      [&out](std::size_t v, float x, float y, float z) { out[v] = Vec3<float>(x, y, z); });
+  return out;
+}
+std::vector<Vec3<float>> unit_normals(const MeshData<float>& mesh) {
+  const VertexNormals normals(VertexRings(mesh.triangles, mesh.vertices.size()));
+  return unit_normals(normals, normals.all(), places_of(mesh), mesh.vertices.size());
 }
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("area of a vertex's ring equals the sum over its triangles, on displaced meshes", S, float,
-                   double) {
-  const Cylinder<S> body(typename Cylinder<S>::Params{});  // rings of 3 to 8 neighbours
-  const auto mesh = body.mesh(500);
-  const VertexNormals<S> normals(mesh.triangles, mesh.vertices.size());
+TEST_CASE("normal of a vertex is the sum over its triangles, on displaced meshes") {
+  const Cylinder<float> body(Cylinder<float>::Params{});
+  auto mesh = body.mesh(500);
+  std::set<std::size_t> sizes;
+  const VertexRings rings(mesh.triangles, mesh.vertices.size());
+  for (std::size_t v = 0; v < rings.size(); ++v) sizes.insert(rings[v].size());
+  CHECK(sizes == std::set<std::size_t>{4, 6, 8});
   std::mt19937_64 random(3);
   INFO("seed 3");
   std::uniform_real_distribution<double> unit(-1e-3, 1e-3);
-  Places<S> places(mesh.vertices.size());
-  for (const auto& v : mesh.vertices)
-    places.push_back(Vec3<S>(v.x() + S(unit(random)), v.y() + S(unit(random)), v.z() + S(unit(random))));
+  for (auto& v : mesh.vertices)
+    v += Vec3<float>(float(unit(random)), float(unit(random)), float(unit(random)));
   using L = Eigen::Matrix<long double, 3, 1>;
   std::vector<L> exact(mesh.vertices.size(), L::Zero());
   for (const auto& t : mesh.triangles) {
-    const auto point = [&](std::size_t k) -> L { return places[t[k]].template cast<long double>(); };
+    const auto point = [&](std::size_t k) -> L { return mesh.vertices[t[k]].template cast<long double>(); };
     const L area = (point(1) - point(0)).cross(point(2) - point(0));
     for (const std::uint32_t v : t) exact[v] += area;
   }
-  const auto areas = areas_of(normals, places);
+  const auto normals = unit_normals(mesh);
   // Differences of places of 0.03 over edges of 0.003: 10 ulp each, a few of them.
   for (std::size_t v = 0; v < exact.size(); ++v)
-    CHECK((areas[v].template cast<long double>() - exact[v]).norm() <= ulps<S>(100) * exact[v].norm());
+    CHECK((normals[v].template cast<long double>() - exact[v].normalized()).norm() <= ulps<float>(100));
 }
 
 TEST_CASE("normals of a fine mesh are the surface's, and outward") {
   const Ellipsoid<double> body({.axes = {0.03, 0.02, 0.02}});
   const auto mesh = body.mesh(5000);
-  const VertexNormals<double> normals(mesh.triangles, mesh.vertices.size());
-  Places<double> places(mesh.vertices.size());
-  for (const auto& v : mesh.vertices) places.push_back(v);
-  const auto areas = areas_of(normals, places);
+  const VertexNormals normals(VertexRings(mesh.triangles, mesh.vertices.size()));
+  const auto all = unit_normals(normals, normals.all(), places_of(mesh), mesh.vertices.size());
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    CHECK(areas[v].normalized().dot(body.closest(mesh.vertices[v]).normal) > 0.999);
+    CHECK(all[v].cast<double>().dot(body.closest(mesh.vertices[v]).normal) > 0.999);
 }
 
-TEST_CASE("runs: every vertex once, in order, none over a start; a mesh without rows has the same normals") {
+TEST_CASE("a group has its own vertices and no others; numbering does not matter") {
   const Ellipsoid<float> body({.axes = {0.03F, 0.02F, 0.02F}});
-  auto mesh = body.mesh(2000);
+  const auto mesh = body.mesh(2000);
   const std::size_t n = mesh.vertices.size();
-  const std::vector<std::size_t> starts{0, 101, 102, 777};
-  const VertexNormals<float> normals(mesh.triangles, n, starts);
-  std::uint32_t next = 0;
-  for (const auto& run : normals.runs()) {
-    CHECK(run.first == next);
-    CHECK(run.count >= 1);
-    CHECK(run.count <= VertexNormals<float>::lanes);
-    for (const std::size_t start : starts) CHECK(!(run.first < start && start < run.first + run.count));
-    next = run.first + run.count;
+  const auto places = places_of(mesh);
+  const VertexRings rings(mesh.triangles, n);
+  VertexNormals normals(rings);
+  const auto everything = normals.all();
+  CHECK(8 * everything.row_end > n / 2);  // both ways are taken
+  CHECK(everything.four_end > 0);
+  const auto whole = unit_normals(normals, everything, places, n);
+  for (const std::size_t count : {0u, 1u, 3u, 4u, 101u}) {
+    std::vector<std::uint32_t> some;
+    for (std::uint32_t v = 0; v < count; ++v) some.push_back(17 * v + 5);
+    const auto part = unit_normals(normals, normals.add(rings, some), places, n);
+    for (std::uint32_t v = 0; v < n; ++v) {
+      if (std::find(some.begin(), some.end(), v) != some.end())
+        CHECK((part[v] - whole[v]).norm() <= ulps<float>(10));  // in a row or not: other roundings
+      else
+        CHECK(part[v] == Vec3<float>::Constant(nowhere));
+    }
   }
-  CHECK(next == n);
-  CHECK(normals.runs().size() < n / 2);  // rows of a dozen and more
 
-  Places<float> places(n), shuffled(n);
-  for (const auto& v : mesh.vertices) places.push_back(v);
-  const auto areas = areas_of(normals, places);
   std::vector<std::uint32_t> to(n);
   for (std::uint32_t i = 0; i < n; ++i) to[i] = i;
   std::shuffle(to.begin(), to.end(), std::mt19937_64(5));
@@ -102,11 +110,51 @@ TEST_CASE("runs: every vertex once, in order, none over a start; a mesh without 
   for (auto& t : other.triangles) {
     for (auto& v : t) v = to[v];
   }
-  for (const auto& v : other.vertices) shuffled.push_back(v);
-  const auto others = areas_of(VertexNormals<float>(other.triangles, n), shuffled);
-  // The ring begins at another neighbour: edges of 0.0015 between places of 0.03, 20 ulp each, a few of them.
-  for (std::size_t i = 0; i < n; ++i)
-    CHECK((areas[i] - others[to[i]]).norm() <= ulps<float>(200) * areas[i].norm());
+  const auto others = unit_normals(other);
+  // Edges of 0.0015 between places of 0.03, 20 ulp each, a few of them.
+  for (std::size_t i = 0; i < n; ++i) CHECK((whole[i] - others[to[i]]).norm() <= ulps<float>(200));
+}
+
+TEST_CASE("a vertex whose ring has collapsed has its normal at rest, its neighbours their own") {
+  const Ellipsoid<float> body({.axes = {0.03F, 0.02F, 0.02F}});
+  const auto mesh = body.mesh(200);
+  const std::size_t n = mesh.vertices.size();
+  const VertexRings rings(mesh.triangles, n);
+  const VertexNormals normals(rings);
+  auto places = places_of(mesh);
+  const auto before = unit_normals(normals, normals.all(), places, n);
+  const Vec3<float> at = mesh.vertices[7];
+  for (const std::uint32_t v : rings[7]) places.set(v, at.x(), at.y(), at.z());
+  const auto after = unit_normals(normals, normals.all(), places, n);
+  CHECK(after[7] == Vec3<float>(0, 0, 2));
+  std::size_t same = 0;
+  for (std::size_t v = 0; v < n; ++v) same += after[v] == before[v] ? 1 : 0;
+  CHECK(same >= n - 40);  // all but those within two edges
+}
+
+TEST_CASE("places are the same put one by one, in a row or anywhere") {
+  const std::array<std::uint32_t, 8> order{5, 0, 3, 7, 6, 1, 2, 4};
+  const auto x = [](std::uint32_t v) { return 0.1F * float(v); };
+  VertexPlaces one(7), row(7), anywhere(7);
+  for (std::uint32_t v = 0; v < 7; ++v) one.set(v, x(v), x(v) + 1, x(v) + 2);
+  for (std::uint32_t first : {0u, 4u}) {
+    float at[3][4], mixed[3][4];
+    for (std::uint32_t k = 0; k < 4; ++k)
+      for (std::uint32_t axis = 0; axis < 3; ++axis) {
+        at[axis][k] = x(first + k) + float(axis);
+        mixed[axis][k] = x(order[first + k]) + float(axis);
+      }
+    row.set4(first, at[0], at[1], at[2]);
+    anywhere.set4(&order[first], mixed[0], mixed[1], mixed[2]);
+  }
+  anywhere.complete();
+  for (const auto* places : {&row, &anywhere})
+    for (std::uint32_t v = 0; v < 7; ++v) {
+      CHECK(places->packed()[v].x == one.packed()[v].x);
+      CHECK(places->packed()[v].y == one.packed()[v].y);
+      CHECK(places->packed()[v].z == one.packed()[v].z);
+      for (std::uint32_t axis = 0; axis < 3; ++axis) CHECK(places->axis(axis)[v] == one.axis(axis)[v]);
+    }
 }
 
 TEST_CASE("set-up refuses a mesh that does not close, or names a vertex that does not exist") {
@@ -114,12 +162,12 @@ TEST_CASE("set-up refuses a mesh that does not close, or names a vertex that doe
   auto mesh = body.mesh(50);
   auto open = mesh.triangles;
   open.pop_back();
-  CHECK_THROWS_AS(VertexNormals<double>(open, mesh.vertices.size()), SetupError);
+  CHECK_THROWS_AS(VertexRings(open, mesh.vertices.size()), SetupError);
   auto bad = mesh.triangles;
   bad[3][1] = 1000;
-  CHECK_THROWS_WITH(VertexNormals<double>(bad, mesh.vertices.size()),
+  CHECK_THROWS_WITH(VertexRings(bad, mesh.vertices.size()),
                     "VertexNormals: vertex does not exist, at triangle 3, got 1000");
   auto flipped = mesh.triangles;
   std::swap(flipped[5][0], flipped[5][1]);
-  CHECK_THROWS_AS(VertexNormals<double>(flipped, mesh.vertices.size()), SetupError);
+  CHECK_THROWS_AS(VertexRings(flipped, mesh.vertices.size()), SetupError);
 }
