@@ -188,7 +188,7 @@ class TouchMesh {
         if (!(slope < 0)) return;
         d -= height / slope;
         raise();
-        if (height * height < 1e-20 * slope * slope * eq.squaredNorm()) break;
+        if (height * height < 1e-10 * slope * slope * eq.squaredNorm()) break;  // what is left: its square
       }
       const double a2 = area.squaredNorm();
       if (!(a2 > 0)) return;

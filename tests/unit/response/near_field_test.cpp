@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <palpate/response/held_compliance.hpp>
 #include <palpate/response/kelvin.hpp>
 #include <palpate/response/near_field.hpp>
 #include <palpate/response/sphere_contact.hpp>
@@ -32,24 +33,33 @@ TEST_CASE("disc loads equal the integral of point loads, nu = 0, 0.3, 1/2") {
   const V m = V::UnitZ();
   for (double nu : {0.0, 0.3, 0.5}) {
     for (int k = 0; k < 4; ++k) {
-      const V r(1.5 * unit(random), 1.5 * unit(random), 0.5 + std::abs(unit(random))), f(unit(random), unit(random), unit(random));
+      const V r(1.5 * unit(random), 1.5 * unit(random), 0.5 + std::abs(unit(random))),
+          f(unit(random), unit(random), unit(random));
       const double z = r.z();
       const V p(r.x(), r.y(), 0), t(f.x(), f.y(), 0);
       const Disc<double> disc(p.squaredNorm(), z, 1.0);
-      const auto vector = [&](const auto& u, const V& along) { return V(u.in_plane * p + u.normal * m + u.along * along); };
+      const auto vector = [&](const auto& u, const V& along) {
+        return V(u.in_plane * p + u.normal * m + u.along * along);
+      };
       // Midpoint rule of 120 x 120: error about 1e-5.
       const V flat = disc_mean([&](const V& x, double) { return point_load<double>(r - x, m, f, nu); });
       CHECK_ABSOLUTE((vector(disc.flat(f.z(), t.dot(p), nu), t) - flat).norm() / flat.norm(), 0.0, 1e-5);
-      const V hertz = disc_mean([&](const V& x, double c) { return V(3 * c * c * point_load<double>(r - x, m, V(0, 0, f.z()), nu)); });
+      const V hertz = disc_mean([&](const V& x, double c) {
+        return V(3 * c * c * point_load<double>(r - x, m, V(0, 0, f.z()), nu));
+      });
       CHECK_ABSOLUTE((vector(disc.hertz(f.z(), nu), t) - hertz).norm() / hertz.norm(), 0.0, 1e-4);
-      const V pair = disc_mean([&](const V& x, double) { return V(1.5 * point_load<double>(r - x, m, x, nu)); });
+      const V pair =
+          disc_mean([&](const V& x, double) { return V(1.5 * point_load<double>(r - x, m, x, nu)); });
       CHECK_ABSOLUTE((vector(disc.double_force(nu), t) - pair).norm() / pair.norm(), 0.0, 1e-4);
       Mat3<double> s = Mat3<double>::Zero();  // symmetric, without trace
       s.topLeftCorner<2, 2>() << f.x(), f.y(), f.y(), -f.x();
-      const V shear = disc_mean([&](const V& x, double) { return V(1.5 * point_load<double>(r - x, m, V(s * x), nu)); });
-      CHECK_ABSOLUTE((vector(disc.shear(p.dot(s * p), nu), V(s * p)) - shear).norm() / shear.norm(), 0.0, 1e-4);
+      const V shear =
+          disc_mean([&](const V& x, double) { return V(1.5 * point_load<double>(r - x, m, V(s * x), nu)); });
+      CHECK_ABSOLUTE((vector(disc.shear(p.dot(s * p), nu), V(s * p)) - shear).norm() / shear.norm(), 0.0,
+                     1e-4);
       if (nu == 0.5) {
-        const V tilt = disc_mean([&](const V& x, double) { return V(3 * x.dot(t) * point_load<double>(r - x, m, m, nu)); });
+        const V tilt = disc_mean(
+            [&](const V& x, double) { return V(3 * x.dot(t) * point_load<double>(r - x, m, m, nu)); });
         CHECK_ABSOLUTE((vector(disc.tilt(t.dot(p), nu), t) - tilt).norm() / tilt.norm(), 0.0, 1e-4);
       }
     }
@@ -60,7 +70,8 @@ TEST_CASE("flat disc: uniform displacement under it, Mindlin's and Boussinesq's 
   for (double nu : {0.0, 0.3, 0.5}) {
     for (double s : {0.0, 0.4, 0.9}) {
       const double a = 0.02;
-      const V along = disc_load(V(s * a, 0, 0), V::UnitZ(), 0, a, V::UnitX(), nu), down = disc_load(V(s * a, 0, 0), V::UnitZ(), 0, a, V::UnitZ(), nu);
+      const V along = disc_load(V(s * a, 0, 0), V::UnitZ(), 0, a, V::UnitX(), nu),
+              down = disc_load(V(s * a, 0, 0), V::UnitZ(), 0, a, V::UnitZ(), nu);
       CHECK_RELATIVE(along.x() / (4 * pi), (2 - nu) / (8 * a), 1e-12);
       CHECK_RELATIVE(down.z() / (4 * pi), (1 - nu) / (4 * a), 1e-12);
     }
@@ -71,13 +82,16 @@ TEST_CASE("point load: traction is the stress of the displacement, and none on t
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (double nu : {0.0, 0.3, 0.45}) {
-    const V r(unit(random), unit(random), 0.4 + std::abs(unit(random))), n = V(unit(random), unit(random), unit(random)).normalized(), m = V::UnitZ();
+    const V r(unit(random), unit(random), 0.4 + std::abs(unit(random))),
+        n = V(unit(random), unit(random), unit(random)).normalized(), m = V::UnitZ();
     const double h = 1e-5;
     Mat3<double> expected;
     for (int k = 0; k < 3; ++k) {
       Mat3<double> G;
       for (int j = 0; j < 3; ++j)
-        G.col(j) = (point_load<double>(r + h * V::Unit(j), m, V::Unit(k), nu) - point_load<double>(r - h * V::Unit(j), m, V::Unit(k), nu)) / (8 * pi * h);
+        G.col(j) = (point_load<double>(r + h * V::Unit(j), m, V::Unit(k), nu) -
+                    point_load<double>(r - h * V::Unit(j), m, V::Unit(k), nu)) /
+                   (8 * pi * h);
       expected.col(k) = (G + G.transpose()) * n + 2 * nu / (1 - 2 * nu) * G.trace() * n;
     }
     // Central differences with h = 1e-5: 1e-9.
@@ -108,11 +122,20 @@ TEST_CASE("lanes agree with real numbers") {
   }
 }
 
+TEST_CASE("fading: its series and its roots agree with the power to the last digit") {
+  for (double size2 = 1e-4; size2 < 100; size2 *= 1.01) {
+    const long double exact = std::pow(1 + std::pow(static_cast<long double>(size2 / 3), 4), -0.125L);
+    CHECK_ABSOLUTE(detail::fading(size2, 3), double(exact), test::ulps<double>(2));
+  }
+}
+
 TEST_CASE("sphere: Hertz for shallow contact, series compliance softens, stiffness is the slope") {
   const double R = 0.015, modulus = 2e6, d = 1e-6;
   // Hertz is the limit; the exact sphere differs by O(d/R) = 7e-5.
-  CHECK_RELATIVE(sphere_force(d, R, modulus, 0.0).force, 4.0 / 3 * modulus * std::sqrt(R) * std::pow(d, 1.5), 1e-4);
-  const auto f = sphere_force(4e-3, R, modulus, 5e-6), up = sphere_force(4e-3 + 1e-7, R, modulus, 5e-6), down = sphere_force(4e-3 - 1e-7, R, modulus, 5e-6);
+  CHECK_RELATIVE(sphere_force(d, R, modulus, 0.0).force, 4.0 / 3 * modulus * std::sqrt(R) * std::pow(d, 1.5),
+                 1e-4);
+  const auto f = sphere_force(4e-3, R, modulus, 5e-6), up = sphere_force(4e-3 + 1e-7, R, modulus, 5e-6),
+             down = sphere_force(4e-3 - 1e-7, R, modulus, 5e-6);
   CHECK(f.force < sphere_force(4e-3, R, modulus, 0.0).force);
   CHECK_RELATIVE(f.stiffness, (up.force - down.force) / 2e-7, 1e-6);  // central difference
   CHECK(sphere_force(-1.0, R, modulus, 0.0).force == 0);
