@@ -166,7 +166,7 @@ class ByteReader {
   std::memcpy(&size, bytes.data() + 16, 8);
   std::memcpy(&sum, bytes.data() + 24, 8);
   if (order != 0x01020304) fail(where, "saved on a machine with the other byte order");
-  if (version != saved_field_version) fail(where, "the format's version is not this library's 4", version);
+  if (version != saved_field_version) fail(where, "the format's version is not the one this library reads", version);
   const std::span<const std::byte> content = bytes.subspan(detail::saved_head);
   if (content.size() != size)
     fail(where, "cut short or too long: bytes missing (more than there should be: < 0)",
