@@ -274,7 +274,7 @@ class DisplacementField {
         return Eigen::Map<const Eigen::Array<S, 4, 1>>(x[axis].value + i).template cast<float>();
       };
       const Eigen::Array4f px = at(0), py = at(1), pz = at(2);
-      place_.set4(first + i, px.data(), py.data(), pz.data());
+      place_.set_row(first + i, px.data(), py.data(), pz.data());
     }
     for (; i < count; ++i)
       place_.set(first + i, static_cast<float>(x[0][i]), static_cast<float>(x[1][i]),

@@ -272,7 +272,7 @@ class HalfSpaceDeformation {
         for (std::size_t v = 0; v < n; ++v) out[v] = x[v] + moves[v] * u[v];
     }
     for (std::size_t v = 0; p_.normals && v < n; v += lane)
-      place_.set4(v, &now_[0][v], &now_[1][v], &now_[2][v]);
+      place_.set_row(v, &now_[0][v], &now_[1][v], &now_[2][v]);
   }
 
   using Read = Eigen::Map<const Lane>;

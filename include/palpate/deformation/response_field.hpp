@@ -145,7 +145,7 @@ class ResponseFieldDeformation {
                                         [this](std::size_t v, float px, float py, float pz) {
                                           detail::put3(to + stride * v, T(px), T(py), T(pz));
                                         });
-      if (place != nullptr) place->set4(vertex + slot, at.x.data(), at.y.data(), at.z.data());
+      if (place != nullptr) place->set_four(vertex + slot, at.x.data(), at.y.data(), at.z.data());
     }
   };
 

@@ -39,14 +39,15 @@ class VertexPlaces {
     axis_[0][v] = x, axis_[1][v] = y, axis_[2][v] = z;
   }
   /// Four in a row, from v on, perhaps past the last vertex if v is a multiple of 4.
-  PALPATE_INLINE void set4(std::size_t v, const float* x, const float* y, const float* z) noexcept {
+  PALPATE_INLINE void set_row(std::size_t v, const float* x, const float* y, const float* z) noexcept {
     detail::store(&axis_[0][v], detail::load4(x));
     detail::store(&axis_[1][v], detail::load4(y));
     detail::store(&axis_[2][v], detail::load4(z));
     pack(x, y, z, [v](std::size_t k) { return v + k; });
   }
   /// Four anywhere. `complete()` when all are there.
-  PALPATE_INLINE void set4(const std::uint32_t* v, const float* x, const float* y, const float* z) noexcept {
+  PALPATE_INLINE void set_four(const std::uint32_t* v, const float* x, const float* y,
+                               const float* z) noexcept {
     pack(x, y, z, [v](std::size_t k) { return v[k]; });
   }
   void complete() noexcept {
@@ -76,8 +77,9 @@ class VertexPlaces {
   std::array<std::vector<float>, 3> axis_;
 };
 
-/// The ring of neighbours p_0 .. p_{m-1} of every vertex of a closed mesh, counter-clockwise from outside, lowest first; an even number: the
-/// last one twice, if need be. Set-up only. Reports a mesh whose triangles do not close around every vertex.
+/// The ring of neighbours p_0 .. p_{m-1} of every vertex of a closed mesh, counter-clockwise from outside, lowest first; an
+/// even number: the last one twice, if need be. Set-up only. Reports a mesh whose triangles do not close around every
+/// vertex.
 class VertexRings {
  public:
   VertexRings(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertices) {

@@ -144,8 +144,8 @@ TEST_CASE("places are the same put one by one, in a row or anywhere") {
         at[axis][k] = x(first + k) + float(axis);
         mixed[axis][k] = x(order[first + k]) + float(axis);
       }
-    row.set4(first, at[0], at[1], at[2]);
-    anywhere.set4(&order[first], mixed[0], mixed[1], mixed[2]);
+    row.set_row(first, at[0], at[1], at[2]);
+    anywhere.set_four(&order[first], mixed[0], mixed[1], mixed[2]);
   }
   anywhere.complete();
   for (const auto* places : {&row, &anywhere})
