@@ -256,7 +256,7 @@ class Remesher {
     for (const auto& e : edges) {
       if (locked[e.triangle[0]] || locked[e.triangle[1]] || is_feature(e.key)) continue;
       Triangle &l = t_[e.triangle[0]], &r = t_[e.triangle[1]];
-      const std::uint32_t a = l[e.corner[0]], b = l[(e.corner[0] + 1) % 3], c = l[(e.corner[0] + 2) % 3], d = r[(e.corner[1] + 2) % 3];
+      const std::uint32_t a = l[e.corner[0]], b = l[(e.corner[0] + 1u) % 3], c = l[(e.corner[0] + 2u) % 3], d = r[(e.corner[1] + 2u) % 3];
       const auto angle = [&](std::uint32_t at) {
         const Vec3d u = p_[a] - p_[at], v = p_[b] - p_[at];
         return std::atan2(u.cross(v).norm(), u.dot(v));

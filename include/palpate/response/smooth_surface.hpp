@@ -46,7 +46,7 @@ struct MeshEdge {
   std::vector<Half> half;
   half.reserve(3 * triangles.size());
   for (std::uint32_t t = 0; t < triangles.size(); ++t)
-    for (std::uint8_t c = 0; c < 3; ++c) half.push_back({edge_key(triangles[t][c], triangles[t][(c + 1) % 3]), t, c});
+    for (std::uint8_t c = 0; c < 3; ++c) half.push_back({edge_key(triangles[t][c], triangles[t][(c + 1u) % 3]), t, c});
   std::sort(half.begin(), half.end(), [](const Half& l, const Half& r) {
     return l.key < r.key || (l.key == r.key && l.triangle < r.triangle);
   });

@@ -30,7 +30,7 @@ struct SuperellipsoidNear {
   struct Result {
     Axes normal;  // this and depth: of lanes that are settled
     Lanes depth;
-    std::array<bool, N> inside, settled;
+    std::array<bool, std::size_t{N}> inside, settled;
     bool any_inside, all_settled;  // all that can
   };
 
@@ -64,7 +64,7 @@ struct SuperellipsoidNear {
     z[0] *= per_N, z[1] *= per_N, z[2] *= per_N;
     u *= shrink, v *= shrink, s *= shrink, t *= per_F, w *= per_F;
     Lanes f = Lanes::Zero();
-    const std::array<bool, N> inside = result.inside;
+    const std::array<bool, std::size_t{N}> inside = result.inside;
     for (int step = 0; step < max_steps; ++step) {
       if (step > 0) {
         u = power(z[0], p), v = power(z[1], p), s = (u + v).max(least), t = power(s, q / p),
