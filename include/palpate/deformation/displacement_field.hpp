@@ -202,8 +202,9 @@ class DisplacementField {
     previous_count_ = 0;
     contacts_.clear();
     corners_.clear();
+    if (!p_.normals) return;
     const S *const x = partition().rest(0), *const y = partition().rest(1), *const z = partition().rest(2);
-    for (std::size_t slot = 0; p_.normals && slot < partition().size(); ++slot)
+    for (std::size_t slot = 0; slot < partition().size(); ++slot)
       place_.set(slot, static_cast<float>(x[slot]), static_cast<float>(y[slot]), static_cast<float>(z[slot]));
   }
 

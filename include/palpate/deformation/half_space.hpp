@@ -5,7 +5,7 @@
 
 #include <palpate/deformation/concept.hpp>
 #include <palpate/deformation/fixed_base.hpp>
-#include <palpate/deformation/vertex_normals.hpp>
+#include <palpate/deformation/mesh_normals.hpp>
 
 #include <Eigen/LU>
 
@@ -53,11 +53,9 @@ class HalfSpaceDeformation {
       : p_(checked(params, mesh)), base_(mesh, fixed, static_cast<double>(params.nu), name) {
     set_vertices(mesh);
     if (!p_.normals) return;
-    normals_ = VertexNormals(VertexRings(mesh.triangles, mesh.vertices.size()));
-    rest_normal_.resize(mesh.vertices.size());
-    place_ = VertexPlaces(mesh.vertices.size());
+    normals_ = MeshNormals(mesh.triangles, mesh.vertices.size());
     displace();
-    each_normal([this](std::size_t v, float x, float y, float z) { rest_normal_[v] = {x, y, z}; });
+    normals_.keep_rest();
   }
 
   /// Fills the whole buffer with the undeformed shape. The next write() starts from it.
@@ -271,8 +269,9 @@ class HalfSpaceDeformation {
       else
         for (std::size_t v = 0; v < n; ++v) out[v] = x[v] + moves[v] * u[v];
     }
-    for (std::size_t v = 0; p_.normals && v < n; v += lane)
-      place_.set_row(v, &now_[0][v], &now_[1][v], &now_[2][v]);
+    if (!p_.normals) return;
+    for (std::size_t v = 0; v < n; v += lane)
+      normals_.places().set_row(v, &now_[0][v], &now_[1][v], &now_[2][v]);
   }
 
   using Read = Eigen::Map<const Lane>;
@@ -360,16 +359,7 @@ class HalfSpaceDeformation {
     detail::store3(
         out.positions, out.position_stride, moves_.size(), [](std::size_t v) { return v; }, now_[0].data(),
         now_[1].data(), now_[2].data());
-    if (!p_.normals || out.normals == nullptr) return;
-    unsigned char* const base = reinterpret_cast<unsigned char*>(out.normals);
-    each_normal([base, stride = out.normal_stride](std::size_t v, float x, float y, float z) {
-      detail::put3(base + stride * v, T(x), T(y), T(z));
-    });
-  }
-  template <class Emit>
-  void each_normal(const Emit& emit) const noexcept {
-    normals_.each_unit(
-        normals_.all(), place_, [this](std::size_t v) { return rest_normal_[v]; }, emit);
+    if (p_.normals && out.normals != nullptr) normals_.write(out);
   }
 
   static constexpr int most_rows = 3 * static_cast<int>(Capacity);
@@ -381,10 +371,8 @@ class HalfSpaceDeformation {
   std::vector<float> x_, y_, z_, ux_, uy_, uz_;  // undeformed places and displacements [m], whole lanes
   std::vector<float> moves_;                     // 0 for a fixed vertex, else 1
   Profile profile_;
-  VertexNormals normals_;
+  MeshNormals normals_;
   std::array<std::vector<float>, 3> now_;  // places [m]
-  VertexPlaces place_;                     // with normals: the same
-  std::vector<Packed3> rest_normal_;
   std::array<Contact, Capacity> contact_{};
   std::array<V, Capacity> force_{};
   Screw load_ = Screw::Zero(), motion_ = Screw::Zero();

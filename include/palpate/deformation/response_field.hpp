@@ -4,7 +4,7 @@
 /// @file  Deformation model from a response field: what boundary elements say the whole surface does.
 
 #include <palpate/deformation/concept.hpp>
-#include <palpate/deformation/vertex_normals.hpp>
+#include <palpate/deformation/mesh_normals.hpp>
 #include <palpate/response/response_contact.hpp>
 
 #include <array>
@@ -46,27 +46,20 @@ class ResponseFieldDeformation {
       : p_(params), field_(std::move(field)), display_(*field_, mesh.vertices), tick_(*field_, params.tick) {
     require_non_negative(p_.least_radius, name, "least_radius [m] must be >= 0 and finite");
     if (p_.least_radius == S(0)) p_.least_radius = static_cast<S>(0.25 * field_->mesh().length);
-    const std::size_t n = mesh.vertices.size();
-    if (p_.normals) {
-      normals_ = VertexNormals(VertexRings(mesh.triangles, n));
-      rest_normal_.resize(n);
-    }
-    place_ = VertexPlaces(n);
-    rest();
     if (!p_.normals) return;
-    each_normal([this](std::size_t v, float x, float y, float z) { rest_normal_[v] = {x, y, z}; });
+    normals_ = MeshNormals(mesh.triangles, mesh.vertices.size());
+    each_at_rest([this](std::size_t v, float x, float y, float z) { normals_.places().set(v, x, y, z); });
+    normals_.keep_rest();
   }
 
   template <Real T>
   void write_rest(const VertexBuffer<T>& out) noexcept {
-    rest();
-    const auto store = [n = display_.size()](T* to, std::size_t stride, const Packed3* list) {
-      unsigned char* at = reinterpret_cast<unsigned char*>(to);
-      for (std::size_t v = 0; v < n; ++v, at += stride)
-        detail::put3(at, T(list[v].x), T(list[v].y), T(list[v].z));
-    };
-    store(out.positions, out.position_stride, place_.packed());
-    if (p_.normals && out.normals != nullptr) store(out.normals, out.normal_stride, rest_normal_.data());
+    last_count_ = 0;
+    unsigned char* const base = reinterpret_cast<unsigned char*>(out.positions);
+    each_at_rest([base, stride = out.position_stride](std::size_t v, float x, float y, float z) {
+      detail::put3(base + stride * v, T(x), T(y), T(z));
+    });
+    if (p_.normals && out.normals != nullptr) normals_.write_rest(out);
   }
 
   /// Writes the shape under `contacts`, unless it is the one already there.
@@ -87,7 +80,7 @@ class ResponseFieldDeformation {
     }
     if (out.positions == nullptr || !is_new(pressed, count)) return moved;
     tick_.solve(pressed.data(), count, forces_.data());
-    Put<T> put(display_, out, p_.normals ? &place_ : nullptr);
+    Put<T> put(display_, out, p_.normals ? &normals_.places() : nullptr);
     tick_.each(display_, put);
     moved.vertices = display_.size();
     if (moved.vertices > 0) {
@@ -96,11 +89,8 @@ class ResponseFieldDeformation {
       moved.upper = Vec3<float>(high.x.maxCoeff(), high.y.maxCoeff(), high.z.maxCoeff()).template cast<S>();
     }
     if (p_.normals && out.normals != nullptr) {
-      place_.complete();
-      unsigned char* const base = reinterpret_cast<unsigned char*>(out.normals);
-      each_normal([base, stride = out.normal_stride](std::size_t v, float nx, float ny, float nz) {
-        detail::put3(base + stride * v, T(nx), T(ny), T(nz));
-      });
+      normals_.complete();
+      normals_.write(out);
     }
     return moved;
   }
@@ -168,26 +158,16 @@ class ResponseFieldDeformation {
   }
 
   template <class Emit>
-  void each_normal(const Emit& emit) const noexcept {
-    normals_.each_unit(
-        normals_.all(), place_, [this](std::size_t v) { return rest_normal_[v]; }, emit);
-  }
-
-  void rest() noexcept {
-    last_count_ = 0;
-    for (std::size_t slot = 0; slot < display_.slots(); ++slot) {
-      const std::uint32_t v = display_.vertex()[slot];
-      place_.set(v, display_.x()[slot], display_.y()[slot], display_.z()[slot]);
-    }
+  void each_at_rest(const Emit& emit) const noexcept {
+    for (std::size_t slot = 0; slot < display_.slots(); ++slot)
+      emit(display_.vertex()[slot], display_.x()[slot], display_.y()[slot], display_.z()[slot]);
   }
 
   Params p_;
   std::shared_ptr<const ResponseField> field_;
   ResponseDisplay display_;
   ResponseTick<Contacts> tick_;
-  VertexNormals normals_;
-  VertexPlaces place_;  // now
-  std::vector<Packed3> rest_normal_;
+  MeshNormals normals_;
   std::array<ResponseContact<S>, Contacts> last_{};
   std::size_t last_count_ = 0;
   std::array<Vec3<S>, Contacts> forces_{};

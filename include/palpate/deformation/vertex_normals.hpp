@@ -5,6 +5,7 @@
 
 #include <palpate/core/error.hpp>
 #include <palpate/core/float_vector.hpp>
+#include <palpate/core/inverse_root.hpp>
 
 #include <algorithm>
 #include <array>
@@ -40,37 +41,40 @@ class VertexPlaces {
   }
   /// Four in a row, from v on, perhaps past the last vertex if v is a multiple of 4.
   PALPATE_INLINE void set_row(std::size_t v, const float* x, const float* y, const float* z) noexcept {
-    detail::store(&axis_[0][v], detail::load4(x));
-    detail::store(&axis_[1][v], detail::load4(y));
-    detail::store(&axis_[2][v], detail::load4(z));
+    detail::store_vector(&axis_[0][v], detail::load_vector<detail::Float4>(x));
+    detail::store_vector(&axis_[1][v], detail::load_vector<detail::Float4>(y));
+    detail::store_vector(&axis_[2][v], detail::load_vector<detail::Float4>(z));
     pack(x, y, z, [v](std::size_t k) { return v + k; });
   }
-  /// Four anywhere. `complete()` when all are there.
+  /// Four anywhere, packed; `complete()` for the coordinates when all are there.
   PALPATE_INLINE void set_four(const std::uint32_t* v, const float* x, const float* y,
                                const float* z) noexcept {
     pack(x, y, z, [v](std::size_t k) { return v[k]; });
   }
   void complete() noexcept {
     for (std::size_t v = 0; v < packed_.size(); v += 4) {
-      detail::Float4 a = detail::load4(&packed_[v].x), b = detail::load4(&packed_[v + 1].x),
-                     c = detail::load4(&packed_[v + 2].x), d = detail::load4(&packed_[v + 3].x);
+      detail::Float4 a = detail::load_vector<detail::Float4>(&packed_[v].x),
+                     b = detail::load_vector<detail::Float4>(&packed_[v + 1].x),
+                     c = detail::load_vector<detail::Float4>(&packed_[v + 2].x),
+                     d = detail::load_vector<detail::Float4>(&packed_[v + 3].x);
       detail::transpose(a, b, c, d);
-      detail::store(&axis_[0][v], a);
-      detail::store(&axis_[1][v], b);
-      detail::store(&axis_[2][v], c);
+      detail::store_vector(&axis_[0][v], a);
+      detail::store_vector(&axis_[1][v], b);
+      detail::store_vector(&axis_[2][v], c);
     }
   }
 
  private:
   template <class At>
   PALPATE_INLINE void pack(const float* x, const float* y, const float* z, const At& at) noexcept {
-    detail::Float4 a = detail::load4(x), b = detail::load4(y), c = detail::load4(z), d{};
+    detail::Float4 a = detail::load_vector<detail::Float4>(x), b = detail::load_vector<detail::Float4>(y),
+                   c = detail::load_vector<detail::Float4>(z), d{};
     detail::transpose(a, b, c, d);
     Packed3* const to = packed_.data();
-    detail::store(&to[at(0)].x, a);
-    detail::store(&to[at(1)].x, b);
-    detail::store(&to[at(2)].x, c);
-    detail::store(&to[at(3)].x, d);
+    detail::store_vector(&to[at(0)].x, a);
+    detail::store_vector(&to[at(1)].x, b);
+    detail::store_vector(&to[at(2)].x, c);
+    detail::store_vector(&to[at(3)].x, d);
   }
 
   std::vector<Packed3> packed_;
@@ -187,6 +191,8 @@ class VertexNormals {
     const Group after = all();
     return {before.row_end, after.row_end, before.four_end, after.four_end};
   }
+  /// Are coordinates read, not only packed places?
+  [[nodiscard]] bool has_rows() const noexcept { return !rows_.empty(); }
   /// All groups.
   [[nodiscard]] Group all() const noexcept {
     return {0, static_cast<std::uint32_t>(rows_.size()), 0, static_cast<std::uint32_t>(fours_.size())};
@@ -204,8 +210,7 @@ class VertexNormals {
       using Register = std::remove_reference_t<decltype(x)>;
       const Register square = x * x + y * y + z * z;
       detail::take_least(least, square);
-      Register scale;
-      detail::inverse_root(square, scale);
+      const Register scale = detail::inverse_root(square);
       x *= scale, y *= scale, z *= scale;
       for (std::uint32_t k = 0; k < sizeof(Register) / sizeof(float); ++k) put(vertex(k), x[k], y[k], z[k]);
     });
@@ -253,11 +258,12 @@ class VertexNormals {
   // 2 A in the order z, x, y.
   [[nodiscard]] static PALPATE_INLINE detail::Float4 area(const float* p, const std::uint32_t* ring,
                                                           std::uint32_t size) noexcept {
-    using detail::Float4, detail::load4, detail::rotated;
-    const Float4 o = load4(p + ring[size - 1]);
-    Float4 here = load4(p + ring[0]), sum{};
+    using detail::Float4, detail::load_vector, detail::rotated;
+    const Float4 o = load_vector<Float4>(p + ring[size - 1]);
+    Float4 here = load_vector<Float4>(p + ring[0]), sum{};
     for (std::uint32_t j = 0; j + 2 < size; j += 2) {
-      const Float4 next = load4(p + ring[j + 2]), a = load4(p + ring[j + 1]) - o, b = next - here;
+      const Float4 next = load_vector<Float4>(p + ring[j + 2]), a = load_vector<Float4>(p + ring[j + 1]) - o,
+                   b = next - here;
       sum += a * rotated(b) - rotated(a) * b;
       here = next;
     }
@@ -267,18 +273,15 @@ class VertexNormals {
   template <class V>
   static PALPATE_INLINE void area(const float* px, const float* py, const float* pz,
                                   const std::uint32_t* ring, std::uint32_t size, V& x, V& y, V& z) noexcept {
-    using detail::load;
-    V ox, oy, oz, hx, hy, hz;
+    const auto read = [](const float* from) { return detail::load_vector<V>(from); };
     const std::uint32_t last = ring[size - 1], first = ring[0];
-    load(ox, px + last), load(oy, py + last), load(oz, pz + last);
-    load(hx, px + first), load(hy, py + first), load(hz, pz + first);
+    const V ox = read(px + last), oy = read(py + last), oz = read(pz + last);
+    V hx = read(px + first), hy = read(py + first), hz = read(pz + first);
     V sx{}, sy{}, sz{};
     for (std::uint32_t j = 0; j + 2 < size; j += 2) {
       const std::uint32_t q = ring[j + 1], s = ring[j + 2];
-      V ax, ay, az, nx, ny, nz;
-      load(ax, px + q), load(ay, py + q), load(az, pz + q);
-      load(nx, px + s), load(ny, py + s), load(nz, pz + s);
-      ax -= ox, ay -= oy, az -= oz;
+      const V nx = read(px + s), ny = read(py + s), nz = read(pz + s);
+      const V ax = read(px + q) - ox, ay = read(py + q) - oy, az = read(pz + q) - oz;
       const V bx = nx - hx, by = ny - hy, bz = nz - hz;
       sx += ay * bz - az * by;
       sy += az * bx - ax * bz;

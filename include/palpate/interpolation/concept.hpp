@@ -18,7 +18,6 @@
 #include <palpate/core/vector.hpp>
 #include <palpate/interpolation/partition.hpp>
 
-#include <bit>
 #include <concepts>
 #include <cstdint>
 #include <span>
@@ -134,26 +133,6 @@ inline void sum_rows(const WeightBlock<S>& w, const std::array<const S*, max_fac
       y[i] += row[i] * ry;
       z[i] += row[i] * rz;
     }
-  }
-}
-
-/// 1 / sqrt(x) for x >= 0 to 4 ulp, finite at 0. std::sqrt may have to set errno, and then loops do not vectorise.
-/// Source: [lomont2003]; Newton steps until rounding.
-template <Real S>
-[[nodiscard]] inline S inverse_root(S x) noexcept {
-  if constexpr (sizeof(S) == 4) {
-    S y = std::bit_cast<S>(0x5f375a86u - (std::bit_cast<std::uint32_t>(x) >> 1));
-    const S half = S(0.5) * x;
-    y *= S(1.5) - half * y * y;
-    y *= S(1.5) - half * y * y;
-    return y * (S(1.5) - half * y * y);
-  } else {
-    S y = std::bit_cast<S>(std::uint64_t{0x5fe6ec85e7de30da} - (std::bit_cast<std::uint64_t>(x) >> 1));
-    const S half = S(0.5) * x;
-    y *= S(1.5) - half * y * y;
-    y *= S(1.5) - half * y * y;
-    y *= S(1.5) - half * y * y;
-    return y * (S(1.5) - half * y * y);
   }
 }
 

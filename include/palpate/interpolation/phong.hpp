@@ -3,6 +3,7 @@
 
 /// @file  Phong displacement: the paper's interpolation (V.A.2).
 
+#include <palpate/core/inverse_root.hpp>
 #include <palpate/interpolation/concept.hpp>
 
 #include <cmath>

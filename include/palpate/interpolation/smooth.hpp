@@ -3,6 +3,7 @@
 
 /// @file  Interpolation of least bending energy: no creases between faces.
 
+#include <palpate/core/inverse_root.hpp>
 #include <palpate/interpolation/concept.hpp>
 #include <palpate/interpolation/triharmonic.hpp>
 

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Normals of a mesh all of whose vertices move, into the caller's buffer.
+
+#include <palpate/deformation/concept.hpp>
+#include <palpate/deformation/vertex_normals.hpp>
+
+namespace palpate {
+
+/// Places in, unit normals out, all vertices at once; where a vertex's triangles have collapsed, its normal at rest. Set-up
+/// reports a mesh that is not closed.
+class MeshNormals {
+ public:
+  MeshNormals() = default;
+  MeshNormals(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertices)
+      : normals_(VertexRings(triangles, vertices)), places_(vertices), rest_(vertices) {}
+
+  /// To be filled by the caller.
+  [[nodiscard]] VertexPlaces& places() noexcept { return places_; }
+  /// The places are those at rest. Set-up only.
+  void keep_rest() noexcept {
+    each([this](std::size_t v, float x, float y, float z) { rest_[v] = {x, y, z}; });
+  }
+
+  /// The buffer must want normals.
+  template <Real T>
+  void write(const VertexBuffer<T>& out) const noexcept {
+    each(put(out));
+  }
+  template <Real T>
+  void write_rest(const VertexBuffer<T>& out) const noexcept {
+    const auto put = this->put(out);
+    for (std::size_t v = 0; v < rest_.size(); ++v) put(v, rest_[v].x, rest_[v].y, rest_[v].z);
+  }
+  /// After `VertexPlaces::set_four`.
+  void complete() noexcept {
+    if (normals_.has_rows()) places_.complete();
+  }
+
+ private:
+  template <Real T>
+  [[nodiscard]] static auto put(const VertexBuffer<T>& out) noexcept {
+    return
+        [base = reinterpret_cast<unsigned char*>(out.normals), stride = out.normal_stride](
+            std::size_t v, float x, float y, float z) { detail::put3(base + stride * v, T(x), T(y), T(z)); };
+  }
+  template <class Emit>
+  void each(const Emit& emit) const noexcept {
+    normals_.each_unit(
+        normals_.all(), places_, [this](std::size_t v) { return rest_[v]; }, emit);
+  }
+
+  VertexNormals normals_;
+  VertexPlaces places_;
+  std::vector<Packed3> rest_;
+};
+
+}  // namespace palpate
