@@ -8,7 +8,8 @@
 /// too, and w is smooth: a coarse mesh resolves it.
 ///     H w = -int U t_near dS + G_fixed t ,   w = -u_near on the fixed region
 /// t_near varies fast only near the node. There t_near less its nodal interpolant is integrated by Duffy's map; the rest
-/// is G times nodal values.
+/// is G times nodal values, which are not t_near's: those whose interpolant has the same integrals. (Its own are beyond it where it
+/// bends, by 10 % at two edges from the node.)
 
 #include <palpate/response/boundary_element.hpp>
 #include <palpate/response/near_field.hpp>
@@ -29,19 +30,42 @@ class NearSource {
  public:
   NearSource(const BoundaryElements& bem, double nu) : bem_(bem), nu_(nu) {}
 
-  /// Nodal t_near of node k, zero at the node itself and where it is not smooth (3 nodes x 3).
-  void nodal(std::uint32_t k, Eigen::Ref<Matrix> out) const {
+  /// A triangle near a node, where t_near varies fast.
+  struct Close {
+    std::uint32_t triangle;
+    Vec3d apex;       ///< barycentric, its place nearest to the load
+    double distance;  ///< of that place [m]
+  };
+  [[nodiscard]] std::vector<Close> close(std::uint32_t k) const {
+    const SolveMesh::Node& s = bem_.mesh().nodes[k];
+    std::vector<Close> out;
+    for (std::uint32_t t = 0; t < bem_.elements().size(); ++t) {
+      const Element& e = bem_.elements()[t];
+      const Vec3d w = closest_on_triangle<double>(s.source, e.corner[0], e.corner[1], e.corner[2]);
+      const double distance =
+          (w[0] * e.corner[0] + w[1] * e.corner[1] + w[2] * e.corner[2] - s.source).norm();
+      if (distance <= 2.2 * s.size) out.push_back({t, w, distance});
+    }
+    return out;
+  }
+
+  /// Nodal values that stand for t_near of node k on all but the close triangles (3 nodes x 3).
+  void nodal(std::uint32_t k, const std::vector<Close>& close, Eigen::Ref<Matrix> out) const {
     const SolveMesh& m = bem_.mesh();
     const SolveMesh::Node& s = m.nodes[k];
     for (std::uint32_t j = 0; j < m.nodes.size(); ++j) {
-      const Vec3d r = m.vertices[m.nodes[j].vertex] - s.source;
-      if (r.norm() < 0.6 * s.size) out.middleRows<3>(3 * Eigen::Index(j)).setZero();
-      else out.middleRows<3>(3 * Eigen::Index(j)) = point_load_traction(r, -s.normal, m.nodes[j].normal, nu_);
+      const Vec3d& x = m.vertices[m.nodes[j].vertex];
+      if ((x - s.source).norm() < 0.6 * s.size)  // not smooth there
+        out.middleRows<3>(3 * Eigen::Index(j)).setZero();
+      else
+        out.middleRows<3>(3 * Eigen::Index(j)) = traction(s, x, m.nodes[j].normal);
     }
+    raise_to_integrals(s, close, out);
   }
 
   /// Adds -int U (t_near - nodal interpolant) over the triangles around node k.
-  void remainder(std::uint32_t k, const Eigen::Ref<const Matrix>& nodal, Eigen::Ref<Matrix> out) const {
+  void remainder(std::uint32_t k, const std::vector<Close>& close, const Eigen::Ref<const Matrix>& nodal,
+                 Eigen::Ref<Matrix> out) const {
     const SolveMesh& m = bem_.mesh();
     const SolveMesh::Node& s = m.nodes[k];
     struct Point {
@@ -51,27 +75,29 @@ class NearSource {
     std::vector<Point> points;
     std::vector<ElementPoint> scratch;
     std::vector<std::pair<std::uint32_t, Mat3<double>>> lumps;
-    for (std::uint32_t t = 0; t < m.triangles.size(); ++t) {
+    for (const auto& [t, apex, distance] : close) {
       const Element& e = bem_.elements()[t];
-      const Vec3d w = closest_on_triangle<double>(s.source, e.corner[0], e.corner[1], e.corner[2]);
-      const double distance = (w[0] * e.corner[0] + w[1] * e.corner[1] + w[2] * e.corner[2] - s.source).norm();
-      if (distance > 2.2 * s.size) continue;
       scratch.clear();
-      if (distance < 0.6 * s.size) polar_points<6>(e, w, scratch);
-      else element_points(e, radon_rule(), scratch);
+      if (distance < 0.6 * s.size)
+        polar_points<6>(e, apex, scratch);
+      else
+        element_points(e, radon_rule(), scratch);
       Mat3<double> lump[3] = {Mat3<double>::Zero(), Mat3<double>::Zero(), Mat3<double>::Zero()};
       for (const ElementPoint& q : scratch) {
-        const Vec3d r = q.x - s.source;
-        Mat3<double> f = -q.area * point_load_traction(r, -s.normal, q.normal / q.area, nu_);
-        for (int c = 0; c < 3; ++c) f += (q.area * q.weight[c]) * nodal.middleRows<3>(3 * Eigen::Index(m.nodes_of[t][std::size_t(c)]));
+        Mat3<double> f = -q.area * traction(s, q.x, q.normal / q.area);
+        for (int c = 0; c < 3; ++c)
+          f += (q.area * q.weight[c]) * nodal.middleRows<3>(3 * Eigen::Index(m.nodes_of[t][std::size_t(c)]));
         points.push_back({q.x, f});
         for (int c = 0; c < 3; ++c) lump[c] += q.weight[c] * f;
       }
       for (std::size_t c = 0; c < 3; ++c) {
         const std::uint32_t v = m.triangles[t][c];
-        const auto found = std::find_if(lumps.begin(), lumps.end(), [v](const auto& l) { return l.first == v; });
-        if (found == lumps.end()) lumps.emplace_back(v, lump[c]);
-        else found->second += lump[c];
+        const auto found =
+            std::find_if(lumps.begin(), lumps.end(), [v](const auto& l) { return l.first == v; });
+        if (found == lumps.end())
+          lumps.emplace_back(v, lump[c]);
+        else
+          found->second += lump[c];
       }
     }
     double reach = 0;
@@ -96,6 +122,45 @@ class NearSource {
   }
 
  private:
+  [[nodiscard]] Mat3<double> traction(const SolveMesh::Node& s, const Vec3d& x, const Vec3d& normal) const {
+    return point_load_traction(Vec3d(x - s.source), Vec3d(-s.normal), normal, nu_);
+  }
+
+  // Adds to t_near's own values what its bend b between the ends of each edge leaves out: int phi 4 phi_c phi_d b dS, by the lumped
+  // mass of the triangles that are not close. (A consistent mass changes nothing.)
+  void raise_to_integrals(const SolveMesh::Node& s, const std::vector<Close>& close,
+                          Eigen::Ref<Matrix> out) const {
+    const SolveMesh& m = bem_.mesh();
+    Matrix missing = Matrix::Zero(out.rows(), 3);
+    std::vector<double> mass(m.nodes.size(), 0);
+    auto skip = close.begin();
+    for (std::uint32_t t = 0; t < m.triangles.size(); ++t) {
+      if (skip != close.end() && skip->triangle == t) {
+        ++skip;
+        continue;
+      }
+      const Element& e = bem_.elements()[t];
+      const auto& node = m.nodes_of[t];
+      const auto at = [&node](std::size_t corner) { return 3 * Eigen::Index(node[corner]); };
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::size_t d = (c + 1) % 3, opposite = (c + 2) % 3;
+        const Vec3d normal = e.normal(0.5 * (Vec3d::Unit(Eigen::Index(c)) + Vec3d::Unit(Eigen::Index(d))));
+        const double area = 0.5 * normal.norm();
+        const Mat3<double> bend = traction(s, e.middle[c], normal.normalized()) -
+                                  0.5 * (out.middleRows<3>(at(c)) + out.middleRows<3>(at(d)));
+        missing.middleRows<3>(at(c)) += 2 * area / 15 * bend;
+        missing.middleRows<3>(at(d)) += 2 * area / 15 * bend;
+        missing.middleRows<3>(at(opposite)) += area / 15 * bend;
+        mass[node[c]] += area / 3;
+      }
+    }
+    for (std::size_t j = 0; j < mass.size(); ++j)
+      if (mass[j] > 0) {
+        const Eigen::Index row = 3 * Eigen::Index(j);
+        out.middleRows<3>(row) += missing.middleRows<3>(row) / mass[j];
+      }
+  }
+
   const BoundaryElements& bem_;
   double nu_;
 };
@@ -105,10 +170,12 @@ class NearSource {
 namespace detail {
 /// u_near at vertex v of a unit force along axis l at a node, mu = 1 [1/m]. At the node's own vertex the mean over a disc of
 /// half the edge length.
-[[nodiscard]] inline Vec3d near_at_vertex(const SolveMesh& m, const SolveMesh::Node& node, std::uint32_t v, int l, double nu) {
+[[nodiscard]] inline Vec3d near_at_vertex(const SolveMesh& m, const SolveMesh::Node& node, std::uint32_t v,
+                                          int l, double nu) {
   const Vec3d r = m.vertices[v] - node.source, e = Vec3d::Unit(l);
   const bool own = r.norm() < 0.3 * node.size;
-  const Vec3d u = own ? disc_load(r, -node.normal, 0, 0.5 * node.size, e, nu) : point_load<double>(r, -node.normal, e, nu);
+  const Vec3d u = own ? disc_load(r, -node.normal, 0, 0.5 * node.size, e, nu)
+                      : point_load<double>(r, -node.normal, e, nu);
   return u / (4 * std::numbers::pi);
 }
 }  // namespace detail
@@ -131,11 +198,14 @@ namespace detail {
   const Eigen::Index blocks = (count + block - 1) / block;
   detail::parallel_for(static_cast<std::size_t>(blocks), bem.threads(), [&](std::size_t b) {
     const Eigen::Index first = Eigen::Index(b) * block, size = (std::min)(block, count - first);
-    Matrix traction(3 * Eigen::Index(m.nodes.size()), 3 * size), held(3 * Eigen::Index(bem.fixed().size()), 3 * size);
+    Matrix traction(3 * Eigen::Index(m.nodes.size()), 3 * size),
+        held(3 * Eigen::Index(bem.fixed().size()), 3 * size);
+    std::vector<std::vector<detail::NearSource::Close>> close;
     for (Eigen::Index j = 0; j < size; ++j) {
       const std::uint32_t k = out.touchable[std::size_t(first + j)];
       const SolveMesh::Node& s = m.nodes[k];
-      source.nodal(k, traction.middleCols<3>(3 * j));
+      close.push_back(source.close(k));
+      source.nodal(k, close.back(), traction.middleCols<3>(3 * j));
       for (std::size_t f = 0; f < bem.fixed().size(); ++f) {
         const std::uint32_t v = bem.fixed()[f];
         for (int l = 0; l < 3; ++l)
@@ -146,7 +216,8 @@ namespace detail {
     columns.noalias() = bem.H_fixed() * held;
     columns.noalias() -= bem.G() * traction;
     for (Eigen::Index j = 0; j < size; ++j)
-      source.remainder(out.touchable[std::size_t(first + j)], traction.middleCols<3>(3 * j), columns.middleCols<3>(3 * j));
+      source.remainder(out.touchable[std::size_t(first + j)], close[std::size_t(j)],
+                       traction.middleCols<3>(3 * j), columns.middleCols<3>(3 * j));
   });
   bem.solve(out.w);
   // The fixed vertices' rows hold tractions: there w = -u_near.
