@@ -108,7 +108,7 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
   const Vec3<double> gone = c.d - near.along * P - (near.normal - near.along) * pushed * c.m,
                      slid = tangential(gone, c.m);
   const double sunk = gone.dot(c.m);
-  c.turn = k.turn * (pushed * slid - sunk * dragged);
+  c.turn = k.turn_slid * pushed * slid - k.turn_sunk * sunk * dragged;
   const double steep = indented / c.a;
   c.push = near.along * near.along * k.drag / (1 + steep * steep) * indented * dragged -
            near.normal * k.softening * c.dn2 * c.m;

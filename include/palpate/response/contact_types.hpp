@@ -45,9 +45,10 @@ struct SphereContact {
 /// by which the body as a whole gives way; s: slope of w_n under the patch. Without constants: the radial double force
 /// -nu / (1 - nu) F_n d_n, and the force by which a body that spreads under the patch stiffens.
 struct SecondOrder {
-  double radial = 0.19;  ///< near term along the surface, times delta_n d_n / a; times (2 nu)^3
-  double sink = 0.36;    ///< near term along the normal, likewise; the same for every nu
-  double turn = 0.6;     ///< moment of tilt turn (F_n w_t - F_t w_n); the same for every nu
+  double radial = 0.19;    ///< near term along the surface, times delta_n d_n / a; times (2 nu)^3
+  double sink = 0.36;      ///< near term along the normal, likewise; the same for every nu
+  double turn_slid = 0.4;  ///< moment of tilt turn_slid F_n w_t - turn_sunk F_t w_n; the same for every nu
+  double turn_sunk = 0.6;
   double lever =
       0.35;  ///< energy lever (F_n w_t - F_t w_n) . s, whose forces the tool feels; the same for every nu
   double drag =
@@ -56,7 +57,7 @@ struct SecondOrder {
 
   [[nodiscard]] SecondOrder at(double nu) const noexcept {
     const double held = nu > 0.3 ? nu : 0.3, b = 1 - 2 * held;
-    return {8 * held * held * held * radial, sink, turn, lever, (1 + 1.3 * b) * drag,
+    return {8 * held * held * held * radial, sink, turn_slid, turn_sunk, lever, (1 + 1.3 * b) * drag,
             (1 - 2.5 * b) * softening};
   }
 };

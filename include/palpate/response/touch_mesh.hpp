@@ -258,32 +258,61 @@ class TouchMesh {
   }
 
   // Least squares over the neighbours: g = argmin sum |g.d_j - (h_j - h_k)|^2 / |d_j|^2 in the tangent plane. A solved node
-  // looks at solved ones only: h bends at the rim.
+  // looks at solved ones only: h bends at the rim. As a load comes near a crease its w grows beyond what the mesh resolves: nodes
+  // of creases do not count where there are others, and up to two edges from a crease a second ring of others does.
   void fit_gradients(const SolveMesh& m, const std::vector<std::uint32_t>& number) {
-    std::vector<std::vector<std::uint32_t>> ring(nodes_.size());
+    using List = std::vector<std::uint32_t>;
+    const auto put = [](List& list, std::uint32_t j) {
+      if (std::find(list.begin(), list.end(), j) == list.end()) list.push_back(j);
+    };
+    std::vector<List> ring(nodes_.size());
     for (std::size_t t = 0; t < m.triangles.size(); ++t)
       for (std::size_t c = 0; c < 3; ++c)
         for (std::size_t o = 1; o < 3; ++o) {
           const std::uint32_t k = number[m.nodes_of[t][c]], j = number[m.nodes_of[t][(c + o) % 3]];
-          if (m.fixed_triangle[t] && k < solved_) continue;
-          auto& r = ring[k];
-          if (std::find(r.begin(), r.end(), j) == r.end()) r.push_back(j);
+          if (!m.fixed_triangle[t] || k >= solved_) put(ring[k], j);
         }
+    std::vector<std::uint8_t> beside_crease(nodes_.size());
+    for (std::size_t k = 0; k < nodes_.size(); ++k) beside_crease[k] = nodes_[k].crease;
+    for (int edges = 0; edges < 2; ++edges) {
+      const std::vector<std::uint8_t> before = beside_crease;
+      for (std::size_t k = 0; k < nodes_.size(); ++k)
+        for (auto j : ring[k])
+          if (before[j]) beside_crease[k] = 1;
+    }
     gradient_.resize(nodes_.size());
     for (std::uint32_t k = 0; k < nodes_.size(); ++k) {
-      const Vec3<double> n = nodes_[k].normal, t1 = perpendicular(n), t2 = n.cross(t1);
-      Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
-      for (auto j : ring[k]) {
-        const Vec3<double> d = nodes_[j].source - nodes_[k].source;
-        const Eigen::Vector2d s(d.dot(t1), d.dot(t2));
-        A += s * s.transpose() / d.squaredNorm();
+      const SolveMesh::Node& node = nodes_[k];
+      const Vec3<double> t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
+      const auto offset = [&](std::uint32_t j) -> Eigen::Vector2d {
+        const Vec3<double> d = nodes_[j].source - node.source;
+        return Eigen::Vector2d(d.dot(t1), d.dot(t2)) / d.norm();
+      };
+      const auto moments = [&](const List& list) {
+        Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
+        for (auto j : list) A += offset(j) * offset(j).transpose();
+        return A;
+      };
+      List near;
+      const auto gather = [&](const List& from) {
+        for (auto j : from)
+          if (j != k && !nodes_[j].crease && nodes_[j].normal.dot(node.normal) > 0.3 &&
+              (k >= solved_ || j < solved_))
+            put(near, j);
+      };
+      gather(ring[k]);
+      if (beside_crease[k])
+        for (auto l : ring[k]) gather(ring[l]);
+      Eigen::Matrix2d A = moments(near);
+      if (near.size() < 3 || A.determinant() < 0.1 * A.trace() * A.trace()) {  // at most 0.25
+        near = ring[k];
+        A = moments(near);
       }
       A += 1e-6 * A.trace() * Eigen::Matrix2d::Identity();
       const Eigen::Matrix2d inverse = A.inverse();
       Vec3<double> sum = Vec3<double>::Zero();
-      for (auto j : ring[k]) {
-        const Vec3<double> d = nodes_[j].source - nodes_[k].source;
-        const Eigen::Vector2d g = inverse * Eigen::Vector2d(d.dot(t1), d.dot(t2)) / d.squaredNorm();
+      for (auto j : near) {
+        const Eigen::Vector2d g = inverse * offset(j) / (nodes_[j].source - node.source).norm();
         gradient_[k].push_back({j, g[0] * t1 + g[1] * t2});
         sum += gradient_[k].back().g;
       }
