@@ -75,11 +75,13 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
   const double nu = field.nu(), stuck = stuck_load(c.a, nu);
   const DiscCompliance near = disc_compliance(c.a, nu);
   const Vec3<double> t1 = c.t1(), t2 = c.t2();
-  // The local terms take no force above the half-space's for d: where the body is far stiffer, they have nothing to say.
+  // The local terms take no force above the half-space's for d: where the body is far stiffer, they have nothing to say. The double
+  // force, which is met far away, takes twice as much.
   const double normal = c.P.dot(c.m);
   const Vec3<double> indentation = near.along * c.P + (near.normal - near.along) * normal * c.m;
   const double most = c.d.norm(), length = indentation.norm();
-  const Vec3<double> P = length > most ? Vec3<double>(most / length * c.P) : c.P;
+  const double local = length > most ? most / length : 1;
+  const Vec3<double> P = local * c.P;
   const double pushed = P.dot(c.m);
   const Vec3<double> dragged = P - pushed * c.m;
 
@@ -102,7 +104,7 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
   if (second_order == nullptr) return;
   const SecondOrder& k = *second_order;
   const double depth = std::clamp(c.d.dot(c.m), -2 * c.a, 2 * c.a), indented = near.normal * pushed,
-               dipole = -outward(nu) * normal * depth;
+               dipole = -outward(nu) * (std::min)(2 * local, 1.0) * normal * depth;
   c.dn2 = indented * depth;
   // By how much the body as a whole gives way, along the normal and the surface.
   const Vec3<double> gone = c.d - near.along * P - (near.normal - near.along) * pushed * c.m,
