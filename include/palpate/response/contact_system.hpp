@@ -47,7 +47,10 @@ class ContactSystem {
   /// P of the first `count` contacts, all located: first by the forces alone; they give the further loads.
   void solve(std::size_t count) noexcept {
     if constexpr (Capacity > 1)
-      if (count > 1) loosen(count);
+      if (count > 1) {
+        couple(count);
+        loosen(count);
+      }
     for (std::size_t i = 0; i < count; ++i)
       if (contact_[i].moments.share > 0) widen(contact_[i]);
     solve_once(count);
@@ -187,10 +190,28 @@ class ContactSystem {
   }
 
  private:
+  // Mean displacement of patch i by contact j: by unit forces, by unit loads beside them.
+  struct Coupling {
+    Mat3<double> forces, moments;
+  };
+  [[nodiscard]] Coupling& by(std::size_t i, std::size_t j) noexcept { return coupling_[i * Capacity + j]; }
+
   // S, with C held.
   static void invert(Contact& c) noexcept {
     if (!is_above(c.C, one_mode * c.least)) hold_above(c.C, one_mode * c.least);
     c.S = c.C.inverse();
+  }
+  // What contacts do to each other. It is at most what they give way: with K = L_i N L_j^T, C = L L^T, all singular values of N are
+  // below 1, so |N|^2 < 3. One that is t times too large is off by as much, for the mesh does not resolve it, and counts as 1/t of it.
+  void couple(std::size_t count) noexcept {
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const Contact &ci = contact_[i], &cj = contact_[j];
+        const Mat3<double> K = 0.5 * (coupling(*field_, ci, cj) + coupling(*field_, cj, ci).transpose());
+        const double share = 3 / (std::max)((ci.S * K * cj.S * K.transpose()).trace(), 3.0);
+        by(i, j) = {share * K, share * coupling_of_moments(*field_, ci, cj)};
+        by(j, i) = {share * K.transpose(), share * coupling_of_moments(*field_, cj, ci)};
+      }
   }
   // A contact comes in with d = 0 where deeper ones have moved the surface by u: held there it would pull. So it grips by what it
   // has left to do, 1 - u.d/d^2, all of it from a quarter on; and nothing while d is small against u, wherever that points. Deeper
@@ -204,8 +225,8 @@ class ContactSystem {
       for (std::size_t j = 0; j < count; ++j) {
         const double deeper = contact_[j].d.squaredNorm();
         if (!(deeper > d2)) continue;
-        u += smooth(std::sqrt(deeper / (d2 + tiny)) - 1) *
-             (coupling(*field_, c, contact_[j]) * (contact_[j].S * contact_[j].d));
+        u +=
+            smooth(std::sqrt(deeper / (d2 + tiny)) - 1) * (by(i, j).forces * (contact_[j].S * contact_[j].d));
       }
       c.grip = smooth(4 * (1 - u.dot(c.d) / (d2 + tiny))) * fading(0.01 * u.squaredNorm(), d2);
     }
@@ -220,12 +241,8 @@ class ContactSystem {
   // What the forces do beneath the other contacts' patches.
   void bend(std::size_t count) noexcept {
     for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t j = 0; j < count; ++j) {
-        if (i == j) continue;
-        Mat3<double>& by = by_moments_[i * Capacity + j];
-        by = coupling_of_moments(*field_, contact_[i], contact_[j]);
-        contact_[j].bent += by.transpose() * contact_[i].P;
-      }
+      for (std::size_t j = 0; j < count; ++j)
+        if (i != j) contact_[j].bent += by(i, j).moments.transpose() * contact_[i].P;
   }
   void widen(Contact& c) const noexcept {
     c.moments.read(*field_, c.place, c.level, c.m, c.a, c.share * c.share, stuck_load(c.a, field_->nu()));
@@ -241,19 +258,15 @@ class ContactSystem {
     for (std::size_t i = 0; i < count; ++i) {
       root[i] = std::sqrt(contact_[i].grip);
       put(system, i, i, contact_[i].C);
-      for (std::size_t j = 0; j < i; ++j)
-        put(system, i, j,
-            0.5 * root[i] * root[j] *
-                (coupling(*field_, contact_[i], contact_[j]) +
-                 coupling(*field_, contact_[j], contact_[i]).transpose()));
+      for (std::size_t j = 0; j < i; ++j) put(system, i, j, root[i] * root[j] * by(i, j).forces);
       for (std::size_t j = 0; j < count; ++j) {
         if (i == j || contact_[j].dipole == 0) continue;
         const Contact& cj = contact_[j];
-        const Mat3<double>& by = by_moments_[i * Capacity + j];
+        const Mat3<double>& moved = by(i, j).moments;
         const Vec3<double> loads(cj.dipole, cj.tilt.dot(cj.t1()), cj.tilt.dot(cj.t2()));
         contact_[i].rhs -=
-            kept(size_of_both(by.col(0).norm(), cj.dipole, by.rightCols<2>().norm(), cj.tilt), cj) *
-            (by * loads);
+            kept(size_of_both(moved.col(0).norm(), cj.dipole, moved.rightCols<2>().norm(), cj.tilt), cj) *
+            (moved * loads);
       }
     }
     for (std::size_t i = 0; i < n; ++i) system.b[i] = root[i / 3] * contact_[i / 3].rhs[Eigen::Index(i % 3)];
@@ -306,7 +319,7 @@ class ContactSystem {
   const ResponseField* field_;
   Settings settings_;
   std::array<Contact, Capacity> contact_{};
-  std::array<Mat3<double>, Capacity == 1 ? 0 : Capacity * Capacity> by_moments_{};  // of j at i
+  std::array<Coupling, Capacity == 1 ? 0 : Capacity * Capacity> coupling_{};
 };
 
 }  // namespace palpate::detail

@@ -43,7 +43,7 @@ struct SphereContact {
 /// change with nu on one normal and one skew push at 0.3, rounded, used for every body (docs/accuracy.md).
 /// delta_n, delta_t: local indentation, the displacement of a half-space by the same force, normal and tangential; w_n, w_t: the rest,
 /// by which the body as a whole gives way; s: slope of w_n under the patch. Without constants: the radial double force
-/// -nu / (1 - nu) F_n d_n, and the force by which a body that spreads under the patch stiffens.
+/// -nu / (1 - nu) F_n d_n, F_n at most twice the half-space's, and the force by which a body that spreads under the patch stiffens.
 struct SecondOrder {
   double radial = 0.19;    ///< near term along the surface, times delta_n d_n / a; times (2 nu)^3
   double sink = 0.36;      ///< near term along the normal, likewise; the same for every nu

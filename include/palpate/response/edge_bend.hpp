@@ -74,20 +74,17 @@ class EdgeBend {
   // the second derivatives makes them small: 0.05^2 of the slopes' weight, 0.3 % of a derivative that is well seen.
   [[nodiscard]] static std::vector<Fit> fit_nodes(const SolveMesh& m) {
     constexpr double penalty = 0.05 * 0.05;
-    const auto put = [](std::vector<std::uint32_t>& list, std::uint32_t k) {
-      if (std::find(list.begin(), list.end(), k) == list.end()) list.push_back(k);
-    };
     std::vector<std::vector<std::uint32_t>> ring(m.nodes.size());
     for (const auto& t : m.nodes_of)
       for (std::size_t c = 0; c < 3; ++c) {
-        put(ring[t[c]], t[(c + 1) % 3]);
-        put(ring[t[c]], t[(c + 2) % 3]);
+        add_once(ring[t[c]], t[(c + 1) % 3]);
+        add_once(ring[t[c]], t[(c + 2) % 3]);
       }
     std::vector<Fit> fits(m.nodes.size());
     for (std::uint32_t k = 0; k < m.nodes.size(); ++k) {
       std::vector<std::uint32_t> near = ring[k];
       for (auto j : ring[k])
-        for (auto l : ring[j]) put(near, l);
+        for (auto l : ring[j]) add_once(near, l);
       const SolveMesh::Node& node = m.nodes[k];
       const Vec3d &x = m.vertices[node.vertex], t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
       using Five = Eigen::Matrix<double, 5, 1>;

@@ -37,6 +37,11 @@ using FixedRegion = std::function<bool(const Vec3<double>&)>;
 
 namespace detail {
 
+/// x at the end of the list, unless it is there already.
+inline void add_once(std::vector<std::uint32_t>& list, std::uint32_t x) {
+  if (std::find(list.begin(), list.end(), x) == list.end()) list.push_back(x);
+}
+
 /// The user's mesh cut along the boundary of the fixed region, so that its rim is a line of edges.
 [[nodiscard]] inline MeshData<double> cut_at_rim(const MeshData<double>& mesh, const FixedRegion& fixed) {
   MeshData<double> out{mesh.vertices, {}};

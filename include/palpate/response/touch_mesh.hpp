@@ -262,15 +262,12 @@ class TouchMesh {
   // of creases do not count where there are others, and up to two edges from a crease a second ring of others does.
   void fit_gradients(const SolveMesh& m, const std::vector<std::uint32_t>& number) {
     using List = std::vector<std::uint32_t>;
-    const auto put = [](List& list, std::uint32_t j) {
-      if (std::find(list.begin(), list.end(), j) == list.end()) list.push_back(j);
-    };
     std::vector<List> ring(nodes_.size());
     for (std::size_t t = 0; t < m.triangles.size(); ++t)
       for (std::size_t c = 0; c < 3; ++c)
         for (std::size_t o = 1; o < 3; ++o) {
           const std::uint32_t k = number[m.nodes_of[t][c]], j = number[m.nodes_of[t][(c + o) % 3]];
-          if (!m.fixed_triangle[t] || k >= solved_) put(ring[k], j);
+          if (!m.fixed_triangle[t] || k >= solved_) detail::add_once(ring[k], j);
         }
     std::vector<std::uint8_t> beside_crease(nodes_.size());
     for (std::size_t k = 0; k < nodes_.size(); ++k) beside_crease[k] = nodes_[k].crease;
@@ -284,21 +281,20 @@ class TouchMesh {
     for (std::uint32_t k = 0; k < nodes_.size(); ++k) {
       const SolveMesh::Node& node = nodes_[k];
       const Vec3<double> t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
-      const auto offset = [&](std::uint32_t j) -> Eigen::Vector2d {
+      const auto towards = [&](std::uint32_t j) -> Eigen::Vector2d {
         const Vec3<double> d = nodes_[j].source - node.source;
         return Eigen::Vector2d(d.dot(t1), d.dot(t2)) / d.norm();
       };
       const auto moments = [&](const List& list) {
         Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
-        for (auto j : list) A += offset(j) * offset(j).transpose();
+        for (auto j : list) A += towards(j) * towards(j).transpose();
         return A;
       };
       List near;
       const auto gather = [&](const List& from) {
         for (auto j : from)
-          if (j != k && !nodes_[j].crease && nodes_[j].normal.dot(node.normal) > 0.3 &&
-              (k >= solved_ || j < solved_))
-            put(near, j);
+          if (j != k && !nodes_[j].crease && nodes_[j].normal.dot(node.normal) > 0.3)
+            detail::add_once(near, j);
       };
       gather(ring[k]);
       if (beside_crease[k])
@@ -312,7 +308,7 @@ class TouchMesh {
       const Eigen::Matrix2d inverse = A.inverse();
       Vec3<double> sum = Vec3<double>::Zero();
       for (auto j : near) {
-        const Eigen::Vector2d g = inverse * offset(j) / (nodes_[j].source - node.source).norm();
+        const Eigen::Vector2d g = inverse * towards(j) / (nodes_[j].source - node.source).norm();
         gradient_[k].push_back({j, g[0] * t1 + g[1] * t2});
         sum += gradient_[k].back().g;
       }
