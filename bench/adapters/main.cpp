@@ -15,9 +15,9 @@
 #include <support/no_heap.hpp>
 
 #include "mesh_scene.hpp"
+#include "scenes.hpp"
 
 #include <cstdio>
-#include <cstring>
 #include <vector>
 
 namespace {
@@ -37,7 +37,7 @@ struct Collide {
 };
 
 template <class Object>
-void row(std::FILE* file, const char* depth, const char* search, const Object& object,
+void row(const Output& out, const char* depth, const char* search, const Object& object,
          const std::vector<Pose<S>>& poses) {
   auto solver = ball_solver(object);
   const ToolPoints<S>& tool = solver.tool();
@@ -59,28 +59,20 @@ void row(std::FILE* file, const char* depth, const char* search, const Object& o
     ticks.push_back(since(start));
     allocations += heap.allocations();
   }
-  for (std::FILE* out : {file, stdout}) {
-    std::fprintf(out, "%s,%s,%.1f,%.2f,%.2f,%.1f,%.8g\n", depth, search, candidates / count, quantile(searches, 0.5),
-                 quantile(ticks, 0.5), static_cast<double>(allocations) / count, force / count);
-  }
+  char text[160];
+  std::snprintf(text, sizeof text, "%s,%s,%.1f,%.2f,%.2f,%.1f", depth, search, candidates / count,
+                quantile(searches, 0.5), quantile(ticks, 0.5), static_cast<double>(allocations) / count);
+  out.row(text, "force_N", force / count);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 2 || argc > 3 || (argc == 3 && std::strcmp(argv[2], "--quick") != 0)) {
-    std::fprintf(stderr, "usage: bench_adapters OUTPUT.csv [--quick]\n");
-    return 2;
-  }
-  std::FILE* out = std::fopen(argv[1], "w");
-  if (!out) {
-    std::perror(argv[1]);
-    return 1;
-  }
+  const Output out(argc, argv, "depth,search,candidates,search_us_p50,tick_us_p50,allocations");
   const MeshData<S> data = body_mesh(40000);
   const MeshSurface<S> body{TriangleMesh<S>(data)};
   const SampledSurface<MeshSurface<S>> samples(body, {.spacing = 2e-3});
-  const std::vector<Pose<S>> poses = glide_path(body, argc == 3 ? 200 : 2000);
+  const std::vector<Pose<S>> poses = glide_path(body, out.quick ? 200 : 2000);
 
   std::vector<fcl::Triangle> triangles;
   std::vector<int> indices;
@@ -105,9 +97,6 @@ int main(int argc, char** argv) {
                                     3 * sizeof(btScalar));
   btBvhTriangleMeshShape shape(&arrays, true);
 
-  const char* head = "depth,search,candidates,search_us_p50,tick_us_p50,allocations,force_N";
-  std::fprintf(out, "%s\n", head);
-  std::printf("%s\n", head);
   const auto rows = [&](const char* depth, const auto& object, S margin) {
     row(out, depth, "palpate", object, poses);
     row(out, depth, "fcl_obbrss", CandidatesFrom(object, FclTree(oriented), margin), poses);
@@ -117,5 +106,5 @@ int main(int argc, char** argv) {
   };
   rows("mesh", body, 0);
   rows("samples", samples, 1.62 * samples.spacing());
-  return std::fclose(out) == 0 ? 0 : 1;
+  return out.failures;
 }

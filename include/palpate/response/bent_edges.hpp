@@ -23,8 +23,7 @@ class BendTable {
   using Edges = std::array<std::uint32_t, 3>;  ///< from corner c to c + 1
 
   BendTable() = default;
-  explicit BendTable(const SolveMesh& mesh) {
-    const detail::EdgeBend bend(mesh);
+  BendTable(const SolveMesh& mesh, const detail::EdgeBend& bend) {
     of_triangle_.resize(mesh.triangles.size());
     std::vector<std::uint8_t> rests(bend.size());
     for (std::size_t t = 0; t < of_triangle_.size(); ++t)

@@ -72,7 +72,7 @@ class BoundaryElements {
   /// Distances, in longest edges, beyond which a triangle is not cut further / beyond which three points do.
   static constexpr double near = 1.8, far = 5;
 
-  BoundaryElements(SolveMesh mesh, double nu, unsigned threads) : mesh_(std::move(mesh)), kelvin_(nu), threads_(threads) {
+  BoundaryElements(SolveMesh mesh, double nu, unsigned threads) : mesh_(std::move(mesh)), bend_(mesh_), kelvin_(nu), threads_(threads) {
     if (!(nu >= 0 && nu <= 0.5)) fail("BoundaryElements", "nu must be in [0, 1/2]", nu);
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       detail::Element e;
@@ -92,6 +92,7 @@ class BoundaryElements {
   }
 
   [[nodiscard]] const SolveMesh& mesh() const noexcept { return mesh_; }
+  [[nodiscard]] const detail::EdgeBend& bend() const noexcept { return bend_; }
   [[nodiscard]] const Kelvin& kelvin() const noexcept { return kelvin_; }
   [[nodiscard]] const std::vector<detail::Element>& elements() const noexcept { return elements_; }
   [[nodiscard]] unsigned threads() const noexcept { return threads_; }
@@ -132,7 +133,6 @@ class BoundaryElements {
         fixed_number[v] = Eigen::Index(fixed_.size());
         fixed_.push_back(v);
       }
-    const detail::EdgeBend bend(mesh_);
     H_.setZero(3 * n, 3 * n);
     G_.setZero(3 * n, 3 * Eigen::Index(mesh_.nodes.size()));
     G_fixed_.setZero(3 * n, 3 * Eigen::Index(fixed_.size()));
@@ -140,7 +140,7 @@ class BoundaryElements {
       const Vec3<double>& x = mesh_.vertices[i];
       Row h = Row::Zero(3, H_.cols()), g = Row::Zero(3, G_.cols()), gf = Row::Zero(3, G_fixed_.cols());
       Mat3<double> T[3], B[3], U[3], sum = Mat3<double>::Zero();
-      std::vector<Mat3<double>> bent(bend.size(), Mat3<double>::Zero());
+      std::vector<Mat3<double>> bent(bend_.size(), Mat3<double>::Zero());
       std::vector<detail::ElementPoint> scratch;
       for (std::size_t t = 0; t < elements_.size(); ++t) {
         for (int c = 0; c < 3; ++c) T[c].setZero(), B[c].setZero(), U[c].setZero();
@@ -149,7 +149,7 @@ class BoundaryElements {
           if (mesh_.triangles[t][static_cast<std::size_t>(c)] == i) self = c;
         integrate(x, t, self, T, B, U, scratch);
         for (std::size_t c = 0; c < 3; ++c) {
-          bent[bend.edge(t, c)] += B[c];
+          bent[bend_.edge(t, c)] += B[c];
           const std::uint32_t v = mesh_.triangles[t][c];
           if (int(c) != self) {
             h.middleCols<3>(3 * Eigen::Index(v)) += T[c];
@@ -160,8 +160,8 @@ class BoundaryElements {
         }
       }
       h.middleCols<3>(3 * Eigen::Index(i)) = -sum;
-      for (std::size_t e = 0; e < bend.size(); ++e)
-        for (const detail::VertexWeight& w : bend[e])
+      for (std::size_t e = 0; e < bend_.size(); ++e)
+        for (const detail::VertexWeight& w : bend_[e])
           h.middleCols<3>(3 * Eigen::Index(w.vertex)) += w.weight * bent[e];
       H_.middleRows<3>(3 * Eigen::Index(i)) = h;
       G_.middleRows<3>(3 * Eigen::Index(i)) = g;
@@ -223,6 +223,7 @@ class BoundaryElements {
   }
 
   SolveMesh mesh_;
+  detail::EdgeBend bend_;
   Kelvin kelvin_;
   unsigned threads_;
   std::vector<detail::Element> elements_;

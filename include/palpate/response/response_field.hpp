@@ -180,7 +180,7 @@ class ResponseField {
                "the boundary equation has no finite solution: is the mesh closed, without triangles that "
                "fold over?");
     mesh_ = bem.mesh();
-    bends_ = BendTable(mesh_);
+    bends_ = BendTable(mesh_, bem.bend());
     touch_ = TouchMesh(mesh_);
     stride_ = padded(mesh_.vertices.size());
     columns_.resize(loads * 3 * stride_ * touch_.nodes().size(), 0.f);

@@ -25,7 +25,7 @@ V u(const V& x) { return V(x.x() * x.x() + x.z(), 2 * x.x() * x.z(), 0.1 - x.z()
 
 TEST_CASE("a quadratic field is drawn exactly on a face, near a contact; far from it, as ever") {
   const SolveMesh mesh = cube();
-  const BendTable table(mesh);
+  const BendTable table(mesh, detail::EdgeBend(mesh));
   const std::size_t n = ResponseField::padded(mesh.vertices.size());
   std::vector<float> field(3 * n, 0.f);
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
