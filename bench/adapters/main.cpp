@@ -3,8 +3,8 @@
 /// @file  Candidates from palpate's own search, from FCL's tree and from Bullet's: `bench_adapters OUTPUT.csv [--quick]`.
 /// A ball of 1,000 points and 20 mm radius glides 2 mm deep over a dented body of 39,000 triangles, as in bench/mesh;
 /// depth from the mesh itself and from its samples. "fcl_collide" asks fcl::collide() instead of walking FCL's tree.
-/// Columns: points that are candidates, the search alone, the whole tick, heap allocations per tick, mean force. Ratios
-/// between rows of one run are what to read.
+/// Columns: points that are candidates, the search alone, the whole tick, heap allocations per tick; printed with them: the
+/// mean force, which all must agree in. Ratios between rows of one run are what to read.
 
 #include <palpate/adapters/bullet.hpp>
 #include <palpate/adapters/fcl.hpp>
