@@ -30,7 +30,7 @@ template <class V>
   return x;
 }
 template <class V>
-PALPATE_INLINE void store_vector(float* to, const V& x) noexcept {
+PALPATE_INLINE void store_vector(void* to, const V& x) noexcept {
   std::memcpy(to, &x, sizeof x);
 }
 
@@ -48,6 +48,16 @@ PALPATE_INLINE void transpose(Float4& a, Float4& b, Float4& c, Float4& d) noexce
   b = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
   c = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
   d = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
+}
+
+/// Rows one after the other: x0 y0 z0 x1, y1 z1 x2 y2, z2 x3 y3 z3.
+PALPATE_INLINE void store_interleaved(unsigned char* to, Float4 x, Float4 y, Float4 z) noexcept {
+  const Float4 xy = __builtin_shufflevector(x, y, 0, 4, 1, 5), zx = __builtin_shufflevector(z, x, 0, 5, 2, 7),
+               yz = __builtin_shufflevector(y, z, 1, 5, 3, 7),
+               xy_high = __builtin_shufflevector(x, y, 2, 6, 3, 7);
+  store_vector(to, Float4(__builtin_shufflevector(xy, zx, 0, 1, 4, 5)));
+  store_vector(to + sizeof x, Float4(__builtin_shufflevector(yz, xy_high, 0, 1, 4, 5)));
+  store_vector(to + 2 * sizeof x, Float4(__builtin_shufflevector(zx, yz, 2, 3, 6, 7)));
 }
 
 /// Lowers `least`, entry by entry, to those of x, four by four.

@@ -11,7 +11,7 @@
 namespace palpate::detail {
 
 /// 1 / sqrt(x) for x >= 0 to 4 ulp, finite at 0. `V`: float, double, Float4 or FloatRegister. std::sqrt may have to set errno, and
-/// then loops do not vectorise. Source: [lomont2003]; Newton steps until rounding.
+/// then loops do not vectorise. Source: [lomont2003]; after it 2e-3, Newton steps and one of third order until rounding.
 template <class V>
 [[nodiscard]] PALPATE_INLINE V inverse_root(const V& x) noexcept {
   constexpr bool is_double = std::is_same_v<V, double>;
@@ -23,9 +23,9 @@ template <class V>
   V y = std::bit_cast<V>(Bits(start - (std::bit_cast<Bits>(x) >> 1)));
   const V half = S(0.5) * x;
   y *= S(1.5) - half * y * y;
-  y *= S(1.5) - half * y * y;
-  y *= S(1.5) - half * y * y;
   if constexpr (is_double) y *= S(1.5) - half * y * y;
+  const V e = S(0.5) - half * y * y;
+  y += y * e * (S(1) + S(1.5) * e);
   return y;
 }
 

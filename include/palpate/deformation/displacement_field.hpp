@@ -63,9 +63,10 @@ class DisplacementField {
   void write_rest(const VertexBuffer<T>& out) noexcept {
     forget();
     const auto order = partition().order();
-    detail::store3(
-        out.positions, out.position_stride, order.size(), [order](std::size_t i) { return order[i]; },
-        partition().rest(0), partition().rest(1), partition().rest(2));
+    detail::VertexWriter<T>(out.positions, out.position_stride)
+        .put_all(
+            order.size(), [order](std::size_t i) { return order[i]; }, partition().rest(0),
+            partition().rest(1), partition().rest(2));
     if (!p_.normals || out.normals == nullptr) return;
     std::fill(dirty_.begin(), dirty_.end(), std::uint8_t{1});
     write_normals(out);
@@ -265,9 +266,9 @@ class DisplacementField {
       extent.take(axis, x[axis]);
     }
     const std::uint32_t* const vertex = part.order().data() + first;
-    detail::store3(
-        out.positions, out.position_stride, count, [vertex](std::size_t i) { return vertex[i]; }, x[0].value,
-        x[1].value, x[2].value);
+    detail::VertexWriter<T>(out.positions, out.position_stride)
+        .put_all(
+            count, [vertex](std::size_t i) { return vertex[i]; }, x[0].value, x[1].value, x[2].value);
     if (!p_.normals) return;
     std::size_t i = 0;
     for (; i + 4 <= count; i += 4) {
@@ -290,10 +291,10 @@ class DisplacementField {
       };
       return Packed3{normal(0), normal(1), normal(2)};
     };
-    unsigned char* const base = reinterpret_cast<unsigned char*>(out.normals);
-    const auto store = [base, stride = out.normal_stride, order = partition().order().data()](
-                           std::size_t slot, float x, float y, float z) {
-      detail::put3(base + stride * order[slot], static_cast<T>(x), static_cast<T>(y), static_cast<T>(z));
+    const auto store = [to = detail::VertexWriter<T>(out.normals, out.normal_stride),
+                        order = partition().order().data()](const auto& slot, const auto& x, const auto& y,
+                                                            const auto& z) {
+      to.put_four([&](std::size_t k) { return order[slot(k)]; }, x, y, z);
     };
     for (std::size_t f = 0; f < dirty_.size(); ++f) {
       if (!dirty_[f]) continue;

@@ -356,9 +356,10 @@ class HalfSpaceDeformation {
 
   template <Real T>
   void store(const VertexBuffer<T>& out) const noexcept {
-    detail::store3(
-        out.positions, out.position_stride, moves_.size(), [](std::size_t v) { return v; }, now_[0].data(),
-        now_[1].data(), now_[2].data());
+    detail::VertexWriter<T>(out.positions, out.position_stride)
+        .put_all(
+            moves_.size(), [](std::size_t v) { return static_cast<std::uint32_t>(v); }, now_[0].data(),
+            now_[1].data(), now_[2].data());
     if (p_.normals && out.normals != nullptr) normals_.write(out);
   }
 

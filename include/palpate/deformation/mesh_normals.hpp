@@ -20,18 +20,22 @@ class MeshNormals {
   [[nodiscard]] VertexPlaces& places() noexcept { return places_; }
   /// The places are those at rest. Set-up only.
   void keep_rest() noexcept {
-    each([this](std::size_t v, float x, float y, float z) { rest_[v] = {x, y, z}; });
+    each([this](const auto& vertex, const auto& x, const auto& y, const auto& z) {
+      for (std::size_t k = 0; k < 4; ++k) rest_[vertex(k)] = {x[k], y[k], z[k]};
+    });
   }
 
   /// The buffer must want normals.
   template <Real T>
   void write(const VertexBuffer<T>& out) const noexcept {
-    each(put(out));
+    each([to = writer(out)](const auto& vertex, const auto& x, const auto& y, const auto& z) {
+      to.put_four(vertex, x, y, z);
+    });
   }
   template <Real T>
   void write_rest(const VertexBuffer<T>& out) const noexcept {
-    const auto put = this->put(out);
-    for (std::size_t v = 0; v < rest_.size(); ++v) put(v, rest_[v].x, rest_[v].y, rest_[v].z);
+    const auto to = writer(out);
+    for (std::size_t v = 0; v < rest_.size(); ++v) to.put(v, T(rest_[v].x), T(rest_[v].y), T(rest_[v].z));
   }
   /// After `VertexPlaces::set_four`.
   void complete() noexcept {
@@ -40,10 +44,8 @@ class MeshNormals {
 
  private:
   template <Real T>
-  [[nodiscard]] static auto put(const VertexBuffer<T>& out) noexcept {
-    return
-        [base = reinterpret_cast<unsigned char*>(out.normals), stride = out.normal_stride](
-            std::size_t v, float x, float y, float z) { detail::put3(base + stride * v, T(x), T(y), T(z)); };
+  [[nodiscard]] static detail::VertexWriter<T> writer(const VertexBuffer<T>& out) noexcept {
+    return {out.normals, out.normal_stride};
   }
   template <class Emit>
   void each(const Emit& emit) const noexcept {

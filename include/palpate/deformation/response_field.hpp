@@ -55,10 +55,8 @@ class ResponseFieldDeformation {
   template <Real T>
   void write_rest(const VertexBuffer<T>& out) noexcept {
     last_count_ = 0;
-    unsigned char* const base = reinterpret_cast<unsigned char*>(out.positions);
-    each_at_rest([base, stride = out.position_stride](std::size_t v, float x, float y, float z) {
-      detail::put3(base + stride * v, T(x), T(y), T(z));
-    });
+    each_at_rest([to = detail::VertexWriter<T>(out.positions, out.position_stride)](
+                     std::size_t v, float x, float y, float z) { to.put(v, T(x), T(y), T(z)); });
     if (p_.normals && out.normals != nullptr) normals_.write_rest(out);
   }
 
@@ -109,8 +107,7 @@ class ResponseFieldDeformation {
     using Lane = detail::Lane;
     const float *at_x, *at_y, *at_z;  // at rest, by slot
     const std::uint32_t* vertex;
-    unsigned char* to;
-    std::size_t stride;
+    detail::VertexWriter<T> to;
     VertexPlaces* place;  // null: not wanted
     detail::Lane3 low, high;
 
@@ -119,8 +116,7 @@ class ResponseFieldDeformation {
           at_y(display.y()),
           at_z(display.z()),
           vertex(display.vertex()),
-          to(reinterpret_cast<unsigned char*>(out.positions)),
-          stride(out.position_stride),
+          to(out.positions, out.position_stride),
           place(places) {
       const Lane far = Lane::Constant((std::numeric_limits<float>::max)());
       low = {far, far, far};
@@ -131,10 +127,9 @@ class ResponseFieldDeformation {
                              Lane::Map(at_z + slot) + u.z};
       low = {low.x.min(at.x), low.y.min(at.y), low.z.min(at.z)};
       high = {high.x.max(at.x), high.y.max(at.y), high.z.max(at.z)};
-      ResponseTick<Contacts>::put_lanes(vertex + slot, at,
-                                        [this](std::size_t v, float px, float py, float pz) {
-                                          detail::put3(to + stride * v, T(px), T(py), T(pz));
-                                        });
+      ResponseTick<Contacts>::put_lanes(
+          vertex + slot, at,
+          [this](std::size_t v, float px, float py, float pz) { to.put(v, T(px), T(py), T(pz)); });
       if (place != nullptr) place->set_four(vertex + slot, at.x.data(), at.y.data(), at.z.data());
     }
   };

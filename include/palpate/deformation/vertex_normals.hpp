@@ -169,10 +169,18 @@ class VertexNormals {
   Group add(const VertexRings& rings, const std::vector<std::uint32_t>& vertices) {
     const Group before = all();
     std::vector<std::uint32_t> others;
+    const auto is_row_at = [&](std::size_t i) {
+      return i + in_row <= vertices.size() && is_row(rings, &vertices[i]);
+    };
     for (std::size_t i = 0; i < vertices.size();) {
-      if (i + in_row <= vertices.size() && is_row(rings, &vertices[i])) {
-        rows_.push_back({vertices[i], list(rings[vertices[i]], 1), size_of(rings[vertices[i]])});
-        i += in_row;
+      // The end of a run, at least two of them, is in a row that begins among those already done.
+      const std::size_t most = (std::min)(i, std::size_t{in_row - 2});
+      std::size_t back = 0;
+      while (back <= most && !is_row_at(i - back)) ++back;
+      if (back <= most) {
+        const std::uint32_t v = vertices[i - back];
+        rows_.push_back({v, list(rings[v], 1), size_of(rings[v])});
+        i += in_row - back;
       } else {
         others.push_back(vertices[i++]);
       }
@@ -198,8 +206,8 @@ class VertexNormals {
     return {0, static_cast<std::uint32_t>(rows_.size()), 0, static_cast<std::uint32_t>(fours_.size())};
   }
 
-  /// emit(vertex, x, y, z) with the unit normal of every vertex of the group, of some more than once. One whose ring has
-  /// collapsed has the normal rest(vertex).
+  /// emit(vertex, x, y, z) with the unit normals of four vertices, number vertex(0) .. vertex(3), until all of the group have
+  /// theirs, some more than once. One whose ring has collapsed has the normal rest(vertex).
   template <class Rest, class Emit>
   PALPATE_FLATTEN void each_unit(const Group& group, const VertexPlaces& places, const Rest& rest,
                                  const Emit& emit) const noexcept {
@@ -207,21 +215,20 @@ class VertexNormals {
     detail::Float4 least{much, much, much, much};  // square of an area
     const Emit put = emit;  // in registers: what it writes might be any of it otherwise
     each_area(group, places, [&](const auto& vertex, auto& x, auto& y, auto& z) {
-      using Register = std::remove_reference_t<decltype(x)>;
-      const Register square = x * x + y * y + z * z;
-      detail::take_least(least, square);
-      const Register scale = detail::inverse_root(square);
-      x *= scale, y *= scale, z *= scale;
-      for (std::uint32_t k = 0; k < sizeof(Register) / sizeof(float); ++k) put(vertex(k), x[k], y[k], z[k]);
+      detail::take_least(least, normalise(x, y, z));
+      by_fours(vertex, x, y, z, put);
     });
     if ((std::min)({least[0], least[1], least[2], least[3]}) > collapsed) return;
     each_area(group, places, [&](const auto& vertex, auto& x, auto& y, auto& z) {
-      const auto square = x * x + y * y + z * z;
+      const auto square = normalise(x, y, z);
+      bool any = false;
       for (std::uint32_t k = 0; k < sizeof x / sizeof(float); ++k) {
         if (square[k] > collapsed) continue;
         const Packed3 normal = rest(vertex(k));
-        emit(vertex(k), normal.x, normal.y, normal.z);
+        x[k] = normal.x, y[k] = normal.y, z[k] = normal.z;
+        any = true;
       }
+      if (any) by_fours(vertex, x, y, z, emit);
     });
   }
 
@@ -289,6 +296,26 @@ class VertexNormals {
       hx = nx, hy = ny, hz = nz;
     }
     x = sx, y = sy, z = sz;
+  }
+
+  // Squares of the lengths.
+  template <class V>
+  static PALPATE_INLINE V normalise(V& x, V& y, V& z) noexcept {
+    const V square = x * x + y * y + z * z, scale = detail::inverse_root(square);
+    x *= scale, y *= scale, z *= scale;
+    return square;
+  }
+  template <class Vertex, class V, class Emit>
+  static PALPATE_INLINE void by_fours(const Vertex& vertex, const V& x, const V& y, const V& z,
+                                      const Emit& emit) noexcept {
+    using detail::Float4;
+    for (std::uint32_t from = 0; from < sizeof(V) / sizeof(float); from += floats) {
+      const auto part = [from](const V& v) {
+        return detail::load_vector<Float4>(reinterpret_cast<const float*>(&v) + from);
+      };
+      emit([&vertex, from](std::size_t k) { return vertex(from + static_cast<std::uint32_t>(k)); }, part(x),
+           part(y), part(z));
+    }
   }
 
   // work(vertex, x, y, z) with 2 A of the vertices vertex(0), vertex(1) ..

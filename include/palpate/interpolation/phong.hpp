@@ -169,7 +169,7 @@ class PhongInterpolation {
                         Block<S>& PALPATE_RESTRICT ty, Block<S>& PALPATE_RESTRICT tz,
                         Block<S>& PALPATE_RESTRICT stretch, Block<S>& PALPATE_RESTRICT missing) noexcept {
     constexpr S tiny = (std::numeric_limits<S>::min)(), most_stretch = S(4);
-    Block<S> length2, length, sine;
+    Block<S> length2, sine;
     for (std::size_t i = 0; i < block_size; ++i)
       g[i] = g[i] > tiny ? g[i] : tiny;  // nothing lent: m is 0 as well
     for (std::size_t i = 0; i < block_size; ++i) g[i] = S(1) / g[i];
@@ -187,13 +187,11 @@ class PhongInterpolation {
     }
     for (std::size_t i = 0; i < block_size; ++i) {
       const S per_length = detail::inverse_root(length2[i]), wanted = sine[i] * per_length;
-      length[i] = length2[i] * per_length;
+      // No more than `most_stretch` makes of the length: nothing, not even a rounding, where that is enough.
+      missing[i] = sine[i] - most_stretch * length2[i] * per_length;
       stretch[i] = wanted < most_stretch ? wanted : most_stretch;
     }
-    for (std::size_t i = 0; i < block_size; ++i) {
-      const S lacking = sine[i] - length[i] * stretch[i];
-      missing[i] = lacking > S(0) ? lacking : S(0);
-    }
+    for (std::size_t i = 0; i < block_size; ++i) missing[i] = missing[i] > S(0) ? missing[i] : S(0);
   }
 
   static void add_displacements(const S* PALPATE_RESTRICT nx, const S* PALPATE_RESTRICT ny,

@@ -35,7 +35,9 @@ std::vector<Vec3<float>> unit_normals(const VertexNormals& normals, const Vertex
       [](std::size_t) {
         return Packed3{0, 0, 2};
       },
-      [&out](std::size_t v, float x, float y, float z) { out[v] = Vec3<float>(x, y, z); });
+      [&out](const auto& vertex, const auto& x, const auto& y, const auto& z) {
+        for (std::size_t k = 0; k < 4; ++k) out[vertex(k)] = Vec3<float>(x[k], y[k], z[k]);
+      });
   return out;
 }
 std::vector<Vec3<float>> unit_normals(const MeshData<float>& mesh) {

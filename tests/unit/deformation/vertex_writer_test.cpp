@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include <palpate/deformation/concept.hpp>
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <random>
+#include <vector>
+
+namespace {
+
+using namespace palpate;
+
+/// Numbers of vertices: runs of one to nine in a row, in a random order.
+std::vector<std::uint32_t> shuffled_runs(std::uint32_t count, std::mt19937_64& random) {
+  std::vector<std::array<std::uint32_t, 2>> runs;
+  for (std::uint32_t v = 0; v < count;) {
+    const std::uint32_t end = (std::min)(count, v + 1 + static_cast<std::uint32_t>(random() % 9));
+    runs.push_back({v, end});
+    v = end;
+  }
+  std::shuffle(runs.begin(), runs.end(), random);
+  std::vector<std::uint32_t> order;
+  for (const auto& [begin, end] : runs)
+    for (std::uint32_t v = begin; v < end; ++v) order.push_back(v);
+  return order;
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE(
+    "vertices in rows or not, packed or not, are where they belong, and nothing else is written", T, float,
+    double) {
+  std::mt19937_64 random(7);
+  INFO("seed 7");
+  constexpr std::uint32_t count = 500;
+  const auto coordinate = [](std::uint32_t v, std::size_t k) { return static_cast<float>(10 * v + k); };
+  for (const std::size_t stride : {3 * sizeof(T), 3 * sizeof(T) + sizeof(float)}) {
+    const std::vector<std::uint32_t> order = shuffled_runs(count, random);
+    std::array<std::vector<float>, 3> place;
+    for (const std::uint32_t v : order)
+      for (std::size_t k = 0; k < 3; ++k) place[k].push_back(coordinate(v, k));
+    const auto vertex = [&order](std::size_t i) { return order[i]; };
+
+    for (const bool by_fours : {false, true}) {
+      constexpr unsigned char untouched = 0xa5;
+      std::vector<unsigned char> bytes(count * stride + 16, untouched);
+      const detail::VertexWriter<T> to(reinterpret_cast<T*>(bytes.data()), stride);
+      if (by_fours) {
+        for (std::size_t i = 0; i < count; i += 4) {
+          const auto part = [&place, i](std::size_t k) {
+            return detail::load_vector<detail::Float4>(&place[k][i]);
+          };
+          to.put_four([&](std::size_t k) { return vertex(i + k); }, part(0), part(1), part(2));
+        }
+      } else {
+        to.put_all(order.size(), vertex, place[0].data(), place[1].data(), place[2].data());
+      }
+      std::size_t wrong = 0;
+      for (std::uint32_t v = 0; v < count; ++v) {
+        std::array<T, 3> at;
+        std::memcpy(at.data(), &bytes[v * stride], sizeof at);
+        for (std::size_t k = 0; k < 3; ++k) wrong += at[k] == T(coordinate(v, k)) ? 0 : 1;
+        for (std::size_t b = v * stride + sizeof at; b < (v + 1) * stride; ++b)
+          wrong += bytes[b] == untouched ? 0 : 1;
+      }
+      for (std::size_t b = count * stride; b < bytes.size(); ++b) wrong += bytes[b] == untouched ? 0 : 1;
+      CHECK(wrong == 0);
+    }
+  }
+}
