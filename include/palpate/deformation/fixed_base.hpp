@@ -112,7 +112,8 @@ class FixedBase {
  private:
   using Square = Eigen::Matrix<double, 6, 6>;
 
-  // Up to 48 points that stand for the region, far from each other, with the areas nearest to them.
+  // Up to 48 points that stand for the region, far from each other, with the areas nearest to them. Regular meshes have many
+  // that are as far: the first one counts, and a rounding decides nothing, so that a turned body has the same.
   void sample(const std::vector<V>& vertex, const std::vector<double>& area) {
     std::vector<V> held;
     std::vector<double> share;
@@ -124,13 +125,16 @@ class FixedBase {
     std::vector<double> gap(held.size(), (std::numeric_limits<double>::max)());
     std::vector<std::size_t> nearest(held.size(), 0);
     const std::size_t most = (std::min)(held.size(), std::size_t(48));
+    constexpr double alike = 1 - 1e-9;
     for (std::size_t next = 0; sample_.size() < most;) {
       sample_.push_back(held[next]);
       for (std::size_t i = 0; i < held.size(); ++i) {
         const double square = (held[i] - held[next]).squaredNorm();
-        if (square < gap[i]) gap[i] = square, nearest[i] = sample_.size() - 1;
+        if (square < alike * gap[i]) gap[i] = square, nearest[i] = sample_.size() - 1;
       }
-      next = static_cast<std::size_t>(std::max_element(gap.begin(), gap.end()) - gap.begin());
+      const double farthest = alike * *std::max_element(gap.begin(), gap.end());
+      next = static_cast<std::size_t>(
+          std::find_if(gap.begin(), gap.end(), [&](double g) { return g >= farthest; }) - gap.begin());
     }
     weight_.assign(sample_.size(), 0.0);
     for (std::size_t i = 0; i < held.size(); ++i) weight_[nearest[i]] += share[i];
