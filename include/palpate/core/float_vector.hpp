@@ -7,6 +7,7 @@
 
 #include <palpate/config.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
 
@@ -60,12 +61,18 @@ PALPATE_INLINE void store_interleaved(unsigned char* to, Float4 x, Float4 y, Flo
   store_vector(to + 2 * sizeof x, Float4(__builtin_shufflevector(zx, yz, 2, 3, 6, 7)));
 }
 
+/// Entries from, from + 1, .. of a register.
+template <class V>
+[[nodiscard]] PALPATE_INLINE Float4 four_of(const V& x, std::size_t from) noexcept {
+  return load_vector<Float4>(reinterpret_cast<const float*>(&x) + from);
+}
 /// Lowers `least`, entry by entry, to those of x, four by four.
 template <class V>
 PALPATE_INLINE void take_least(Float4& least, const V& x) noexcept {
-  Float4 part[sizeof(V) / sizeof(Float4)];
-  std::memcpy(part, &x, sizeof x);
-  for (const Float4& four : part) least = four < least ? four : least;
+  for (std::size_t from = 0; from < sizeof(V) / sizeof(float); from += 4) {
+    const Float4 four = four_of(x, from);
+    least = four < least ? four : least;
+  }
 }
 
 }  // namespace palpate::detail

@@ -6,6 +6,7 @@
 #include <palpate/deformation/concept.hpp>
 #include <palpate/deformation/fixed_base.hpp>
 #include <palpate/deformation/mesh_normals.hpp>
+#include <palpate/deformation/vertex_writer.hpp>
 
 #include <Eigen/LU>
 

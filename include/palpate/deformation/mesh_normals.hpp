@@ -5,6 +5,7 @@
 
 #include <palpate/deformation/concept.hpp>
 #include <palpate/deformation/vertex_normals.hpp>
+#include <palpate/deformation/vertex_writer.hpp>
 
 namespace palpate {
 

@@ -5,6 +5,7 @@
 
 #include <palpate/deformation/concept.hpp>
 #include <palpate/deformation/mesh_normals.hpp>
+#include <palpate/deformation/vertex_writer.hpp>
 #include <palpate/response/response_contact.hpp>
 
 #include <array>

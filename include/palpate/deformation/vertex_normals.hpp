@@ -308,14 +308,10 @@ class VertexNormals {
   template <class Vertex, class V, class Emit>
   static PALPATE_INLINE void by_fours(const Vertex& vertex, const V& x, const V& y, const V& z,
                                       const Emit& emit) noexcept {
-    using detail::Float4;
-    for (std::uint32_t from = 0; from < sizeof(V) / sizeof(float); from += floats) {
-      const auto part = [from](const V& v) {
-        return detail::load_vector<Float4>(reinterpret_cast<const float*>(&v) + from);
-      };
-      emit([&vertex, from](std::size_t k) { return vertex(from + static_cast<std::uint32_t>(k)); }, part(x),
-           part(y), part(z));
-    }
+    using detail::four_of;
+    for (std::uint32_t from = 0; from < sizeof(V) / sizeof(float); from += floats)
+      emit([&vertex, from](std::size_t k) { return vertex(from + static_cast<std::uint32_t>(k)); },
+           four_of(x, from), four_of(y, from), four_of(z, from));
   }
 
   // work(vertex, x, y, z) with 2 A of the vertices vertex(0), vertex(1) ..

@@ -187,11 +187,11 @@ class PhongInterpolation {
     }
     for (std::size_t i = 0; i < block_size; ++i) {
       const S per_length = detail::inverse_root(length2[i]), wanted = sine[i] * per_length;
-      // No more than `most_stretch` makes of the length: nothing, not even a rounding, where that is enough.
-      missing[i] = sine[i] - most_stretch * length2[i] * per_length;
+      // Nothing, not even a rounding, where less than `most_stretch` is enough.
+      const S lacking = sine[i] - most_stretch * length2[i] * per_length;
+      missing[i] = lacking > S(0) ? lacking : S(0);
       stretch[i] = wanted < most_stretch ? wanted : most_stretch;
     }
-    for (std::size_t i = 0; i < block_size; ++i) missing[i] = missing[i] > S(0) ? missing[i] : S(0);
   }
 
   static void add_displacements(const S* PALPATE_RESTRICT nx, const S* PALPATE_RESTRICT ny,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <palpate/deformation/concept.hpp>
+#include <palpate/deformation/vertex_writer.hpp>
 
 #include <doctest/doctest.h>
 
