@@ -3,10 +3,18 @@
 
 /// @file  Floats in one register: the vector extension of gcc and clang, on any processor.
 ///
-/// For what Eigen's arrays have no operation for (shuffles), and where they do not stay in registers at -O2.
+/// For what Eigen's arrays have no operation for (shuffles), where they do not stay in registers at -O2, and in long formulas: each
+/// of Eigen's terms is a type, and gcc takes seconds and gigabytes over thousands of them.
 
 #include <palpate/config.hpp>
 
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#else
+#include <Eigen/Core>
+#endif
+
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -59,6 +67,61 @@ PALPATE_INLINE void store_interleaved(unsigned char* to, Float4 x, Float4 y, Flo
   store_vector(to, Float4(__builtin_shufflevector(xy, zx, 0, 1, 4, 5)));
   store_vector(to + sizeof x, Float4(__builtin_shufflevector(yz, xy_high, 0, 1, 4, 5)));
   store_vector(to + 2 * sizeof x, Float4(__builtin_shufflevector(zx, yz, 2, 3, 6, 7)));
+}
+
+/// x, y, z of each entry to its own place.
+PALPATE_INLINE void store_apart(unsigned char* to0, unsigned char* to1, unsigned char* to2,
+                                unsigned char* to3, Float4 x, Float4 y, Float4 z) noexcept {
+  const Float4 xy = __builtin_shufflevector(x, y, 0, 4, 1, 5),
+               xy_high = __builtin_shufflevector(x, y, 2, 6, 3, 7),
+               xy1 = __builtin_shufflevector(xy, xy, 2, 3, 2, 3),
+               xy3 = __builtin_shufflevector(xy_high, xy_high, 2, 3, 2, 3);
+  const auto store = [](unsigned char* to, const Float4& two, float third) {
+    std::memcpy(to, &two, 2 * sizeof(float));
+    std::memcpy(to + 2 * sizeof(float), &third, sizeof(float));
+  };
+  store(to0, xy, z[0]);
+  store(to1, xy1, z[1]);
+  store(to2, xy_high, z[2]);
+  store(to3, xy3, z[3]);
+}
+
+/// x in every entry.
+[[nodiscard]] PALPATE_INLINE Float4 four(float x) noexcept { return Float4{x, x, x, x}; }
+/// Entry by entry; b where one is not a number. Written as instructions: gcc turns a comparison with 0 into masks.
+[[nodiscard]] PALPATE_INLINE Float4 larger(Float4 a, Float4 b) noexcept {
+#if defined(__SSE__)
+  return _mm_max_ps(a, b);
+#else
+  return a > b ? a : b;
+#endif
+}
+[[nodiscard]] PALPATE_INLINE Float4 smaller(Float4 a, Float4 b) noexcept {
+#if defined(__SSE__)
+  return _mm_min_ps(a, b);
+#else
+  return a < b ? a : b;
+#endif
+}
+[[nodiscard]] PALPATE_INLINE Float4 between(Float4 a, float least, float most) noexcept {
+  return smaller(larger(a, four(least)), four(most));
+}
+[[nodiscard]] PALPATE_INLINE Float4 magnitude(Float4 a) noexcept {
+  return std::bit_cast<Float4>(std::bit_cast<Bits4>(a) & 0x7fffffffu);
+}
+[[nodiscard]] PALPATE_INLINE Float4 root(Float4 a) noexcept {
+#if defined(__SSE__)
+  return _mm_sqrt_ps(a);
+#else
+  Eigen::Array4f x;
+  std::memcpy(x.data(), &a, sizeof a);
+  x = x.sqrt();
+  return load_vector<Float4>(x.data());
+#endif
+}
+[[nodiscard]] PALPATE_INLINE float least_of(Float4 a) noexcept {
+  const Float4 two = smaller(a, __builtin_shufflevector(a, a, 2, 3, 0, 1));
+  return two[0] < two[1] ? two[0] : two[1];
 }
 
 /// Entries from, from + 1, .. of a register.

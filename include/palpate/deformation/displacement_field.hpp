@@ -6,7 +6,7 @@
 #include <palpate/core/error.hpp>
 #include <palpate/deformation/concept.hpp>
 #include <palpate/deformation/vertex_normals.hpp>
-#include <palpate/deformation/vertex_writer.hpp>
+#include <palpate/core/vertex_writer.hpp>
 #include <palpate/interpolation/concept.hpp>
 #include <palpate/interpolation/neighbourhood.hpp>
 

@@ -6,7 +6,7 @@
 #include <palpate/deformation/concept.hpp>
 #include <palpate/deformation/fixed_base.hpp>
 #include <palpate/deformation/mesh_normals.hpp>
-#include <palpate/deformation/vertex_writer.hpp>
+#include <palpate/core/vertex_writer.hpp>
 
 #include <Eigen/LU>
 
@@ -101,7 +101,7 @@ class HalfSpaceDeformation {
   using V = Vec3<double>;
   using Screw = detail::Screw;
   using Lane = detail::Lane;
-  static constexpr std::size_t lane = 4;
+  static constexpr std::size_t lane = detail::lane_size;
 
   struct Contact {
     V x, m, d;  // place, unit normal into the body, displacement [m]
@@ -275,16 +275,14 @@ class HalfSpaceDeformation {
       normals_.places().set_row(v, &now_[0][v], &now_[1][v], &now_[2][v]);
   }
 
-  using Read = Eigen::Map<const Lane>;
-
   // A vector in every place of a lane, and lanes of vectors.
   struct Lanes {
     Lane x, y, z;
     PALPATE_INLINE Lanes(const Lane& a, const Lane& b, const Lane& c) noexcept : x(a), y(b), z(c) {}
     PALPATE_INLINE explicit Lanes(const V& v) noexcept
-        : x(Lane::Constant(static_cast<float>(v.x()))),
-          y(Lane::Constant(static_cast<float>(v.y()))),
-          z(Lane::Constant(static_cast<float>(v.z()))) {}
+        : x(detail::four(static_cast<float>(v.x()))),
+          y(detail::four(static_cast<float>(v.y()))),
+          z(detail::four(static_cast<float>(v.z()))) {}
     [[nodiscard]] PALPATE_INLINE Lane dot(const Lanes& o) const noexcept {
       return x * o.x + y * o.y + z * o.z;
     }
@@ -300,7 +298,7 @@ class HalfSpaceDeformation {
     }
   };
   [[nodiscard]] PALPATE_INLINE Lanes from(const Lanes& o, std::size_t v) const noexcept {
-    return {Read(&x_[v]) - o.x, Read(&y_[v]) - o.y, Read(&z_[v]) - o.z};
+    return {detail::lane_at(&x_[v]) - o.x, detail::lane_at(&y_[v]) - o.y, detail::lane_at(&z_[v]) - o.z};
   }
 
   void add_base() noexcept {
@@ -308,8 +306,8 @@ class HalfSpaceDeformation {
     const Lanes o(base_.middle()), m(inward), shift(motion_.template head<3>()),
         turn(motion_.template tail<3>());
     const Lanes t(tangential<double>(force, inward)), k(inward.cross(moment));
-    const Lane fn = Lane::Constant(static_cast<float>(force.dot(inward))),
-               twist = Lane::Constant(static_cast<float>(moment.dot(inward))), one = Lane::Ones();
+    const Lane fn = detail::four(static_cast<float>(force.dot(inward))),
+               twist = detail::four(static_cast<float>(moment.dot(inward))), one = detail::four(1);
     const Profile& b = profile_;
     for (std::size_t v = 0; v < x_.size(); v += lane) {
       const Lanes r = from(o, v);
@@ -317,32 +315,34 @@ class HalfSpaceDeformation {
       Lanes p = r;
       p.add(-z, m);
       const Lane tp = p.dot(t), kp = p.dot(k);
-      const Lane in = fn * Read(&b.force_in[v]) + tp * Read(&b.shear_in[v]) + kp * Read(&b.tilt_in[v]);
-      const Lane down =
-          fn * Read(&b.force_down[v]) + tp * Read(&b.shear_down[v]) + kp * Read(&b.tilt_down[v]);
+      const Lane in = fn * detail::lane_at(&b.force_in[v]) + tp * detail::lane_at(&b.shear_in[v]) +
+                      kp * detail::lane_at(&b.tilt_in[v]);
+      const Lane down = fn * detail::lane_at(&b.force_down[v]) + tp * detail::lane_at(&b.shear_down[v]) +
+                        kp * detail::lane_at(&b.tilt_down[v]);
       Lanes u = shift;
       u.add(in, p);
       u.add(down, m);
-      u.add(Read(&b.shear_along[v]), t);
-      u.add(Read(&b.tilt_along[v]), k);
-      u.add_cross(twist * Read(&b.twist[v]), m, p);
+      u.add(detail::lane_at(&b.shear_along[v]), t);
+      u.add(detail::lane_at(&b.tilt_along[v]), k);
+      u.add_cross(twist * detail::lane_at(&b.twist[v]), m, p);
       u.add_cross(one, turn, r);
       put(u, v);
     }
   }
 
   void add_contact(const Contact& c, const V& force) noexcept {
+    using detail::larger, detail::smaller, detail::four;
     const Lanes o(c.x), m(c.m), t(scale * tangential<double>(force, c.m));
     const float a = static_cast<float>(c.a), nu = static_cast<float>(p_.nu),
                 fn = static_cast<float>(scale * force.dot(c.m));
     for (std::size_t v = 0; v < x_.size(); v += lane) {
       const Lanes r = from(o, v);
-      const Lane z = r.dot(m), square = r.dot(r).max(1e-12f * a * a);
+      const Lane z = r.dot(m), square = larger(r.dot(r), four(1e-12f * a * a));
       Lanes p = r;
       p.add(-z, m);
-      const Lane depth = (z * (1.f - (a * a / square).min(1.f))).max(0.f);
+      const Lane depth = larger(z * (1.f - smaller(a * a / square, four(1))), Lane{});
       const auto w = Disc<Lane, float>(p.dot(p), depth, a).flat(fn, p.dot(t), nu);
-      Lanes u{Read(&ux_[v]), Read(&uy_[v]), Read(&uz_[v])};
+      Lanes u{detail::lane_at(&ux_[v]), detail::lane_at(&uy_[v]), detail::lane_at(&uz_[v])};
       u.add(w.in_plane, p);
       u.add(w.normal, m);
       u.add(w.along, t);
@@ -350,9 +350,9 @@ class HalfSpaceDeformation {
     }
   }
   PALPATE_INLINE void put(const Lanes& u, std::size_t v) noexcept {
-    Eigen::Map<Lane>{&ux_[v]} = u.x;
-    Eigen::Map<Lane>{&uy_[v]} = u.y;
-    Eigen::Map<Lane>{&uz_[v]} = u.z;
+    detail::store_vector(&ux_[v], u.x);
+    detail::store_vector(&uy_[v], u.y);
+    detail::store_vector(&uz_[v], u.z);
   }
 
   template <Real T>

@@ -5,7 +5,7 @@
 
 #include <palpate/deformation/concept.hpp>
 #include <palpate/deformation/vertex_normals.hpp>
-#include <palpate/deformation/vertex_writer.hpp>
+#include <palpate/core/vertex_writer.hpp>
 
 namespace palpate {
 

@@ -3,9 +3,9 @@
 
 /// @file  Deformation model from a response field: what boundary elements say the whole surface does.
 
+#include <palpate/core/vertex_writer.hpp>
 #include <palpate/deformation/concept.hpp>
 #include <palpate/deformation/mesh_normals.hpp>
-#include <palpate/deformation/vertex_writer.hpp>
 #include <palpate/response/response_contact.hpp>
 
 #include <array>
@@ -83,9 +83,11 @@ class ResponseFieldDeformation {
     tick_.each(display_, put);
     moved.vertices = display_.size();
     if (moved.vertices > 0) {
+      using detail::least_of;
       const detail::Lane3 &low = put.low, &high = put.high;
-      moved.lower = Vec3<float>(low.x.minCoeff(), low.y.minCoeff(), low.z.minCoeff()).template cast<S>();
-      moved.upper = Vec3<float>(high.x.maxCoeff(), high.y.maxCoeff(), high.z.maxCoeff()).template cast<S>();
+      moved.lower = Vec3<float>(least_of(low.x), least_of(low.y), least_of(low.z)).template cast<S>();
+      moved.upper =
+          Vec3<float>(-least_of(-high.x), -least_of(-high.y), -least_of(-high.z)).template cast<S>();
     }
     if (p_.normals && out.normals != nullptr) {
       normals_.complete();
@@ -119,19 +121,18 @@ class ResponseFieldDeformation {
           vertex(display.vertex()),
           to(out.positions, out.position_stride),
           place(places) {
-      const Lane far = Lane::Constant((std::numeric_limits<float>::max)());
+      const Lane far = detail::four((std::numeric_limits<float>::max)());
       low = {far, far, far};
       high = {-far, -far, -far};
     }
     PALPATE_INLINE void operator()(std::size_t slot, const detail::Lane3& u) noexcept {
-      const detail::Lane3 at{Lane::Map(at_x + slot) + u.x, Lane::Map(at_y + slot) + u.y,
-                             Lane::Map(at_z + slot) + u.z};
-      low = {low.x.min(at.x), low.y.min(at.y), low.z.min(at.z)};
-      high = {high.x.max(at.x), high.y.max(at.y), high.z.max(at.z)};
-      ResponseTick<Contacts>::put_lanes(
-          vertex + slot, at,
-          [this](std::size_t v, float px, float py, float pz) { to.put(v, T(px), T(py), T(pz)); });
-      if (place != nullptr) place->set_four(vertex + slot, at.x.data(), at.y.data(), at.z.data());
+      using detail::larger, detail::smaller, detail::lane_at;
+      const detail::Lane3 at{lane_at(at_x + slot) + u.x, lane_at(at_y + slot) + u.y,
+                             lane_at(at_z + slot) + u.z};
+      low = {smaller(low.x, at.x), smaller(low.y, at.y), smaller(low.z, at.z)};
+      high = {larger(high.x, at.x), larger(high.y, at.y), larger(high.z, at.z)};
+      to.put_apart([this, slot](std::size_t k) { return vertex[slot + k]; }, at.x, at.y, at.z);
+      if (place != nullptr) place->set_four(vertex + slot, at.x, at.y, at.z);
     }
   };
 

@@ -41,14 +41,17 @@ class VertexPlaces {
   }
   /// Four in a row, from v on, perhaps past the last vertex if v is a multiple of 4.
   PALPATE_INLINE void set_row(std::size_t v, const float* x, const float* y, const float* z) noexcept {
-    detail::store_vector(&axis_[0][v], detail::load_vector<detail::Float4>(x));
-    detail::store_vector(&axis_[1][v], detail::load_vector<detail::Float4>(y));
-    detail::store_vector(&axis_[2][v], detail::load_vector<detail::Float4>(z));
-    pack(x, y, z, [v](std::size_t k) { return v + k; });
+    const detail::Float4 a = detail::load_vector<detail::Float4>(x),
+                         b = detail::load_vector<detail::Float4>(y),
+                         c = detail::load_vector<detail::Float4>(z);
+    detail::store_vector(&axis_[0][v], a);
+    detail::store_vector(&axis_[1][v], b);
+    detail::store_vector(&axis_[2][v], c);
+    pack(a, b, c, [v](std::size_t k) { return v + k; });
   }
   /// Four anywhere, packed; `complete()` for the coordinates when all are there.
-  PALPATE_INLINE void set_four(const std::uint32_t* v, const float* x, const float* y,
-                               const float* z) noexcept {
+  PALPATE_INLINE void set_four(const std::uint32_t* v, detail::Float4 x, detail::Float4 y,
+                               detail::Float4 z) noexcept {
     pack(x, y, z, [v](std::size_t k) { return v[k]; });
   }
   void complete() noexcept {
@@ -66,9 +69,8 @@ class VertexPlaces {
 
  private:
   template <class At>
-  PALPATE_INLINE void pack(const float* x, const float* y, const float* z, const At& at) noexcept {
-    detail::Float4 a = detail::load_vector<detail::Float4>(x), b = detail::load_vector<detail::Float4>(y),
-                   c = detail::load_vector<detail::Float4>(z), d{};
+  PALPATE_INLINE void pack(detail::Float4 a, detail::Float4 b, detail::Float4 c, const At& at) noexcept {
+    detail::Float4 d{};
     detail::transpose(a, b, c, d);
     Packed3* const to = packed_.data();
     detail::store_vector(&to[at(0)].x, a);

@@ -85,7 +85,7 @@ class BentEdges {
  public:
   /// Four times the bends of a triangle's edges.
   struct OfTriangle {
-    Eigen::Array4f edge[3];
+    Lane edge[3];
     [[nodiscard]] PALPATE_INLINE Lane3 operator()(const Lane& b1, const Lane& b2) const noexcept {
       const Lane b0 = 1.f - b1 - b2, q0 = b0 * b1, q1 = b1 * b2, q2 = b2 * b0;
       return {q0 * edge[0][0] + q1 * edge[1][0] + q2 * edge[2][0],
@@ -122,7 +122,7 @@ class BentEdges {
           const float inside = reach + near[i].a - (table_->middle(e) - near[i].place).norm();
           without *= 1 - std::clamp(inside * (4 / reach), 0.f, 1.f);
         }
-        edge = {now_, without < 1, without < 1 ? bend(e, 1 - without) : Eigen::Array4f::Zero()};
+        edge = {now_, without < 1, without < 1 ? bend(e, 1 - without) : Lane{}};
       }
       any = any || edge.near;
       out.edge[c] = edge.bend;
@@ -134,12 +134,12 @@ class BentEdges {
   struct Edge {
     std::uint64_t found = 0;
     bool near = false;
-    Eigen::Array4f bend;
+    Lane bend;
   };
-  [[nodiscard]] Eigen::Array4f bend(std::uint32_t edge, float share) const noexcept {
-    Eigen::Array4f sum = Eigen::Array4f::Zero();
+  [[nodiscard]] Lane bend(std::uint32_t edge, float share) const noexcept {
+    Lane sum{};
     for (const BendTable::Weight& w : (*table_)[edge])
-      sum += w.weight * Eigen::Map<const Eigen::Array4f>(&field_[4 * w.vertex]);
+      sum += w.weight * lane_at(&field_[4 * w.vertex]);
     return 4 * share * sum;
   }
 

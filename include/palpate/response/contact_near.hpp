@@ -57,27 +57,29 @@ struct ContactNear {
     const Lane rx = at.x - place.x(), ry = at.y - place.y(), rz = at.z - place.z();
     const Lane z = rx * m.x() + ry * m.y() + rz * m.z();
     const Lane px = rx - z * m.x(), py = ry - z * m.y(), pz = rz - z * m.z();
-    const Lane r2 = (rx * rx + ry * ry + rz * rz).max(1e-12f * a * a), p2 = px * px + py * py + pz * pz;
-    const Lane near2 = (a * a / r2).min(1.f);
-    const Lane depth = (z - (z * near2).min(sag)).max(0.f);
+    const Lane r2 = larger(rx * rx + ry * ry + rz * rz, four(1e-12f * a * a)),
+               p2 = px * px + py * py + pz * pz;
+    const Lane near2 = smaller(a * a / r2, four(1.f));
+    const Lane depth = larger(z - smaller(z * near2, four(sag)), Lane{});
     const Disc<Lane, float> disc(p2, depth, a);
     if (ball) {
       const auto u = disc.hertz(normal, nu);
       return {u.in_plane * px + u.normal * m.x(), u.in_plane * py + u.normal * m.y(),
               u.in_plane * pz + u.normal * m.z()};
     }
-    const auto u = disc.flat(normal, Lane(px * along.x() + py * along.y() + pz * along.z()), nu);
-    Lane in_plane = u.in_plane, down = u.normal, back = Lane::Zero();
+    const auto u = disc.flat(normal, px * along.x() + py * along.y() + pz * along.z(), nu);
+    Lane in_plane = u.in_plane, down = u.normal, back{};
     Lane3 out{u.along * along.x(), u.along * along.y(), u.along * along.z()};
     if (second) {
       const auto d = disc.double_force(nu);
-      const Lane inverse = near2.sqrt(), beyond = (1.f - near2).max(0.f);  // 1 / s, at most 1; 1 - 1 / s^2
+      const Lane inverse = root(near2),
+                 beyond = larger(1.f - near2, Lane{});  // 1 / s, at most 1; 1 - 1 / s^2
       // q_r / (a s): asin(1/s) / (s sqrt(s^2 - 1 + e^2)), with the roots of 1/s^2 instead.
-      const Lane q_r =
-          (radial / a) * arc_sine(inverse) * near2 * inverse / (beyond + rim2 * near2).max(1e-12f).sqrt();
+      const Lane q_r = (radial / a) * arc_sine(inverse) * near2 * inverse /
+                       root(larger(beyond + rim2 * near2, four(1e-12f)));
       in_plane += dipole * d.in_plane + q_r;
       back = near2 * near2 * near2 * near2;
-      down += dipole * d.normal + sink * near2 * near2 * inverse * beyond.sqrt();
+      down += dipole * d.normal + sink * near2 * near2 * inverse * root(beyond);
       out.x -= back * push.x();
       out.y -= back * push.y();
       out.z -= back * push.z();
@@ -87,7 +89,7 @@ struct ContactNear {
       const auto t = disc.tilt(tp, nu);
       in_plane += t.in_plane;
       // The patch itself does not turn: what second order does at its edge is taken back, as the push is.
-      down += t.normal - back * near2.sqrt() * (px * turn.x() + py * turn.y() + pz * turn.z());
+      down += t.normal - back * root(near2) * (px * turn.x() + py * turn.y() + pz * turn.z());
       out.x += t.along * tilt.x();
       out.y += t.along * tilt.y();
       out.z += t.along * tilt.z();
@@ -96,7 +98,7 @@ struct ContactNear {
       const Lane sx = shear(0, 0) * px + shear(0, 1) * py + shear(0, 2) * pz,
                  sy = shear(1, 0) * px + shear(1, 1) * py + shear(1, 2) * pz,
                  sz = shear(2, 0) * px + shear(2, 1) * py + shear(2, 2) * pz;
-      const auto s = disc.shear(Lane(px * sx + py * sy + pz * sz), nu);
+      const auto s = disc.shear(px * sx + py * sy + pz * sz, nu);
       in_plane += s.in_plane;
       down += s.normal;
       out.x += s.along * sx;

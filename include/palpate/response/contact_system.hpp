@@ -208,7 +208,8 @@ class ContactSystem {
       for (std::size_t j = 0; j < i; ++j) {
         const Contact &ci = contact_[i], &cj = contact_[j];
         const Mat3<double> K = 0.5 * (coupling(*field_, ci, cj) + coupling(*field_, cj, ci).transpose());
-        const double share = 3 / (std::max)((ci.S * K * cj.S * K.transpose()).trace(), 3.0);
+        const Mat3<double> one = ci.S * K, other = K * cj.S;
+        const double share = 3 / (std::max)(one.cwiseProduct(other).sum(), 3.0);  // trace of S_i K S_j K^T
         by(i, j) = {share * K, share * coupling_of_moments(*field_, ci, cj)};
         by(j, i) = {share * K.transpose(), share * coupling_of_moments(*field_, cj, ci)};
       }
@@ -277,7 +278,7 @@ class ContactSystem {
       least[i] = coupled_mode * contact_[i].least + resolved_mode * whole;
     System test = system;
     for (std::size_t i = 0; i < n; ++i) test.at(i, i) -= least[i / 3];
-    if (!test.solve(n)) hold(system, n, least);
+    if (!test.factor(n)) hold(system, n, least);
     const bool ok = system.solve(n);
     for (std::size_t i = 0; i < count; ++i) {
       contact_[i].P.setZero();

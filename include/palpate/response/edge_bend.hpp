@@ -11,9 +11,8 @@
 /// With linear u alone a bar or plate that bends is 10 to 900 % wrong (docs/accuracy.md). The idea is that of gradient
 /// recovery, [zienkiewicz1992].
 
+#include <palpate/beam/cholesky.hpp>
 #include <palpate/response/solve_mesh.hpp>
-
-#include <Eigen/Cholesky>
 
 namespace palpate::detail {
 
@@ -70,6 +69,12 @@ class EdgeBend {
   // Second derivatives at a node (11, 12, 22) by the displacement of each neighbour less the node's own [1/m^2].
   using Fit = std::vector<std::pair<std::uint32_t, Vec3d>>;
 
+  struct Row {  // one neighbour's: its displacement is by . (slopes, second derivatives)
+    std::uint32_t vertex;
+    double weight;
+    std::array<double, 5> by;
+  };
+
   // Weighted least squares, 1/d^2. Where the neighbours do not tell (two rows across a narrow strip), a small penalty on
   // the second derivatives makes them small: 0.05^2 of the slopes' weight, 0.3 % of a derivative that is well seen.
   [[nodiscard]] static std::vector<Fit> fit_nodes(const SolveMesh& m) {
@@ -87,25 +92,26 @@ class EdgeBend {
         for (auto l : ring[j]) add_once(near, l);
       const SolveMesh::Node& node = m.nodes[k];
       const Vec3d &x = m.vertices[node.vertex], t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
-      using Five = Eigen::Matrix<double, 5, 1>;
-      Eigen::Matrix<double, 5, 5> A = Eigen::Matrix<double, 5, 5>::Zero();
-      std::vector<std::pair<std::uint32_t, Five>> rows;
+      SpdSystem<5> A{};
+      std::vector<Row> rows;
       for (auto j : near) {
         const double facing = m.nodes[j].normal.dot(node.normal);
         if (m.nodes[j].vertex == node.vertex || facing < 0.3) continue;  // round the corner
         const Vec3d d = (m.vertices[m.nodes[j].vertex] - x) / node.size;
         const double p = d.dot(t1), q = d.dot(t2), w = facing / d.squaredNorm();
-        Five row;
-        row << p, q, 0.5 * p * p, p * q, 0.5 * q * q;
-        A += w * w * row * row.transpose();
-        rows.push_back({m.nodes[j].vertex, w * w * row});
+        const Row row{m.nodes[j].vertex, w * w, {p, q, 0.5 * p * p, p * q, 0.5 * q * q}};
+        for (std::size_t r = 0; r < 5; ++r)
+          for (std::size_t c = 0; c <= r; ++c) A.at(r, c) += row.weight * row.by[r] * row.by[c];
+        rows.push_back(row);
       }
-      const double slopes = A(0, 0) + A(1, 1) + 1e-30;
-      A.diagonal().head<2>().array() += 1e-9 * slopes;
-      A.diagonal().tail<3>().array() += penalty * slopes;
-      const Eigen::LDLT<Eigen::Matrix<double, 5, 5>> solver(A);
-      for (const auto& [vertex, row] : rows)
-        fits[k].push_back({vertex, solver.solve(row).tail<3>() / (node.size * node.size)});
+      const double slopes = A.at(0, 0) + A.at(1, 1) + 1e-30;
+      for (std::size_t r = 0; r < 5; ++r) A.at(r, r) += (r < 2 ? 1e-9 : penalty) * slopes;
+      if (!A.factor(5)) fail_at("EdgeBend", "neighbours must be finite", "node", k);
+      for (const Row& row : rows) {
+        for (std::size_t r = 0; r < 5; ++r) A.b[r] = row.weight * row.by[r];
+        A.substitute(5);
+        fits[k].push_back({row.vertex, Vec3d(A.b[2], A.b[3], A.b[4]) / (node.size * node.size)});
+      }
     }
     return fits;
   }

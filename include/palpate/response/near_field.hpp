@@ -16,13 +16,14 @@
 ///     normal:      u = f_n [ -z grad phi + (1 + (1-2 nu)) phi m - (1-2 nu) grad_p L ]
 ///     tangential:  u = 2 f phi - z grad_p d_f L + 2 nu grad_p d_f X + m [ -z d_f phi + (1-2 nu) d_f L ]
 
-#include <palpate/config.hpp>
+#include <palpate/core/float_vector.hpp>
 #include <palpate/core/vector.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <concepts>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
@@ -79,43 +80,39 @@ template <class T>
 }
 
 namespace detail {
-/// Four places at a time, for the tick's long loops; Eigen maps it to the machine's registers.
-using Lane = Eigen::Array4f;
+/// Four places at a time, for the tick's long loops.
+using Lane = Float4;
+inline constexpr std::uint32_t lane_size = sizeof(Lane) / sizeof(float);
+[[nodiscard]] PALPATE_INLINE Lane lane_at(const float* from) noexcept { return load_vector<Lane>(from); }
 
-template <class S>
-[[nodiscard]] PALPATE_INLINE S larger(const S& a, const S& b) noexcept {
-  if constexpr (std::floating_point<S>)
-    return a > b ? a : b;
-  else
-    return a.max(b);
+template <std::floating_point S>
+[[nodiscard]] PALPATE_INLINE S larger(S a, S b) noexcept {
+  return a > b ? a : b;
 }
-template <class S>
-[[nodiscard]] PALPATE_INLINE S where_positive(const S& x, const S& yes, const S& no) noexcept {
-  if constexpr (std::floating_point<S>)
-    return x >= S(0) ? yes : no;
-  else {
-    const S step = (x * 1e30f).max(0.f).min(1.f);  // arithmetic: a select would leave the registers
-    return no + step * (yes - no);
-  }
+template <std::floating_point S>
+[[nodiscard]] PALPATE_INLINE S root(S x) noexcept {
+  return std::sqrt(x);
+}
+template <std::floating_point S>
+[[nodiscard]] PALPATE_INLINE S magnitude(S x) noexcept {
+  return std::abs(x);
 }
 /// atan2(y, x) for x >= 0, y >= 0, not both 0; in lanes to 2e-6 by a polynomial.
-template <class S>
-[[nodiscard]] PALPATE_INLINE S first_quadrant_angle(const S& y, const S& x) noexcept {
-  if constexpr (std::floating_point<S>) {
-    return std::atan2(y, x);
-  } else {
-    const S t = x.min(y) / x.max(y), t2 = t * t;
-    const S p = t * (0.99997726f +
-                     t2 * (-0.33262347f +
+[[nodiscard]] PALPATE_INLINE double first_quadrant_angle(double y, double x) noexcept {
+  return std::atan2(y, x);
+}
+[[nodiscard]] PALPATE_INLINE Lane first_quadrant_angle(Lane y, Lane x) noexcept {
+  const Lane t = smaller(x, y) / larger(x, y), t2 = t * t;
+  const Lane p =
+      t *
+      (0.99997726f + t2 * (-0.33262347f +
                            t2 * (0.19354346f + t2 * (-0.11643287f + t2 * (0.05265332f - t2 * 0.01172120f)))));
-    const S step = ((y - x) * 1e30f).max(0.f).min(1.f);
-    return p + step * (1.57079633f - 2.f * p);
-  }
+  return y > x ? 1.57079633f - p : p;
 }
 /// asin(x) for 0 <= x <= 1, to 7e-5. Source: [abramowitz1964], 4.4.45.
 [[nodiscard]] PALPATE_INLINE Lane arc_sine(const Lane& x) noexcept {
   return 1.57079633f -
-         (1.f - x).max(0.f).sqrt() * (1.5707288f + x * (-0.2121144f + x * (0.0742610f - 0.0187293f * x)));
+         root(larger(1.f - x, Lane{})) * (1.5707288f + x * (-0.2121144f + x * (0.0742610f - 0.0187293f * x)));
 }
 }  // namespace detail
 
@@ -130,18 +127,17 @@ class Disc {
   };
 
   PALPATE_INLINE Disc(const S& p2, const S& depth, F radius) noexcept : z_(depth), p2_(p2), a_(radius) {
-    using std::abs;
-    using std::sqrt;
+    using detail::larger, detail::root, detail::magnitude;
     const S re = p2 + z_ * z_ - a_ * a_, im = F(2) * a_ * z_;
-    const S modulus = sqrt(re * re + im * im);  // |R|^2
+    const S modulus = root(re * re + im * im);  // |R|^2
     // The root's larger part by sum, the smaller from the product: no cancellation. At the rim R = 0 is held off.
-    const S rim = z_ * F(0) + F(1e-4) * a_;
-    const S large = detail::larger(S(sqrt(F(0.5) * (modulus + abs(re)))), rim), small = F(0.5) * im / large;
-    R_.re = detail::where_positive(re, large, small);
+    const S rim = F(1e-4) * a_ + S{};
+    const S large = larger(S(root(F(0.5) * (modulus + magnitude(re)))), rim), small = F(0.5) * im / large;
+    R_.re = re >= S{} ? large : small;
     R_.im = large + small - R_.re;
     const C sum{R_.re + z_, R_.im + a_};
     angle_ = detail::first_quadrant_angle(sum.im, sum.re);
-    const S d = F(1) / (sum.re * sum.re + sum.im * sum.im), r = F(1) / detail::larger(modulus, S(rim * rim));
+    const S d = F(1) / (sum.re * sum.re + sum.im * sum.im), r = F(1) / larger(modulus, S(rim * rim));
     w_ = {sum.re * d, -sum.im * d};
     iR_ = {R_.re * r, -R_.im * r};
     wR_ = w_ * iR_;
@@ -164,18 +160,18 @@ class Disc {
                        F(0.25) * a_ * R_.re);
     S in_plane = -z_ * hertz_phi_p();
     if (b > F(0)) {
-      const C q{z_, z_ * F(0) + a_}, sum = R_ * R_ + R_ * q + q * q;
+      const C q{z_, S{} + a_}, sum = R_ * R_ + R_ * q + q * q;
       in_plane = in_plane -
                  b * s * (F(-0.5) * (z_ * angle_ - R_.im) - (w_ * sum).im / F(6) + F(0.5) * a_ * (q * w_).re);
     }
-    return {fn * in_plane, fn * ((F(1) + b) * phi - z_ * hertz_phi_z()), z_ * F(0)};
+    return {fn * in_plane, fn * ((F(1) + b) * phi - z_ * hertz_phi_z()), S{}};
   }
   /// Radial double force in the disc's plane, sum x.f = 1; weight minus half the gradient of Hertz's.
   [[nodiscard]] PALPATE_INLINE Field double_force(F nu) const noexcept {
     const F b = F(1) - F(2) * nu, s = F(3) / (a_ * a_ * a_);
     const S phi_zp = s * (z_ * wR_.im - iR_.im), phi_zz = s * (angle_ - a_ * iR_.re);
     return {F(-0.5) * ((F(1) + b) * hertz_phi_p() + z_ * phi_zp), F(-0.5) * (z_ * phi_zz - b * hertz_phi_z()),
-            z_ * F(0)};
+            S{}};
   }
   /// Normal forces with the moment sum x (f.m) = t, tp = t.p; weight minus the gradient of Hertz's. The part with
   /// 1 - 2 nu in the plane is left out.

@@ -20,11 +20,10 @@
 /// alone, gradually (ContactSystem::loosen): of what several do to each other's moments only the slopes are known. Nothing is fitted.
 /// docs/accuracy.md.
 
+#include <palpate/beam/cholesky.hpp>
 #include <palpate/response/contact_near.hpp>
 #include <palpate/response/held_compliance.hpp>
 #include <palpate/response/response_field.hpp>
-
-#include <Eigen/Cholesky>
 
 namespace palpate::detail {
 
@@ -57,10 +56,6 @@ struct PatchMoments {
       const Vec3<double> k1 = perpendicular(n), k2 = n.cross(k1);
       // The least turn from one plane into the other; between opposite normals, where there is none, nothing is left.
       const double c = 0.5 * (t1.dot(k1) + t2.dot(k2)), s = 0.5 * (t1.dot(k2) - t2.dot(k1));
-      MomentMatrix T = MomentMatrix::Zero();  // these loads as the node's
-      T(0, 0) = 1;
-      T.block<2, 2>(1, 1) << c * c - s * s, -2 * c * s, 2 * c * s, c * c - s * s;
-      T.block<2, 2>(3, 3) << c, -s, s, c;
       MomentsByForce mean = MomentsByForce::Zero();
       MomentMatrix own = MomentMatrix::Zero();
       for (std::size_t l = 0; l < 2; ++l) {
@@ -68,37 +63,28 @@ struct PatchMoments {
         const PatchTable::Moments& row = field.table().moments(k, level.below + l);
         for (int r = 0, e = 0; r < 5; ++r) {
           for (int j = 0; j < 3; ++j) mean(r, j) += part * double(row.mean[r][j]);
-          for (int j = 0; j <= r; ++j) own(r, j) += part * double(row.own[e++]);
+          for (int j = 0; j <= r; ++j, ++e) own(r, j) = own(j, r) += part * double(row.own[e]);
         }
       }
-      own.triangularView<Eigen::StrictlyUpper>() = own.transpose();
-      G.noalias() += T.transpose() * mean;
-      W.noalias() += T.transpose() * own * T;
+      turn(mean, c, s);
+      turn(own, c, s);
+      own.transposeInPlace();
+      turn(own, c, s);
+      G += mean;
+      W += own;
     }
     // For nu < 1/2 a force has a double force and a tilt of its own.
-    MomentsByForce with = MomentsByForce::Zero();
-    with.row(0) = stuck * m.transpose();
-    with.row(3) = -0.5 * stuck * t1.transpose();
-    with.row(4) = -0.5 * stuck * t2.transpose();
-    G.noalias() += W * with;
-    const double nu = field.nu(), unit = 3 / (32 * a * a * a);
-    Moments root;  // of 1 / D_near
-    root << 2 * (1 - nu), 2 - nu, 2 - nu, 4 * (1 - nu), 4 * (1 - nu);
-    root = (unit * root).cwiseSqrt().cwiseInverse();
-    MomentMatrix D = root.asDiagonal() * W * root.asDiagonal();
-    D.diagonal().array() += 1;
-    if (Eigen::LLT<MomentMatrix>(D - 0.1 * MomentMatrix::Identity()).info() != Eigen::Success) {
-      hold_above(D, 0.1);
-      const Moments inverse = root.cwiseInverse();
-      W = inverse.asDiagonal() * (D - MomentMatrix::Identity()) * inverse.asDiagonal();
-    }
-    give = root.asDiagonal() * (share * D.llt().solve(MomentMatrix(root.asDiagonal())));
+    for (int r = 0; r < 5; ++r)
+      for (int j = 0; j < 3; ++j)
+        G(r, j) += stuck * (W(r, 0) * m[j] - 0.5 * (W(r, 3) * t1[j] + W(r, 4) * t2[j]));
+    hold(field.nu(), a);
   }
 
   /// What the held moments take from a compliance whose trace is `whole`. They take less than all of it, in theory; where the mesh
   /// does not resolve w, they are held to half.
   [[nodiscard]] Mat3<double> taken(double whole) noexcept {
-    const Mat3<double> all = G.transpose() * give * G;
+    const MomentsByForce held = give * G;
+    const Mat3<double> all = G.transpose() * held;
     const double r = 2 * all.trace() / whole, r2 = r * r, r4 = r2 * r2,
                  less = 1 / std::sqrt(std::sqrt(1 + r4));
     give *= less;
@@ -121,6 +107,52 @@ struct PatchMoments {
     return y[1] * (t1 * t1.transpose() - t2 * t2.transpose()) + y[2] * (across + across.transpose());
   }
   [[nodiscard]] Vec3<double> tilt(const Moments& y) const noexcept { return y[3] * t1 + y[4] * t2; }
+
+ private:
+  // Rows of a node's loads to those of the patch, whose axes are turned by the angle of cosine c and sine s.
+  template <class M>
+  static void turn(M& rows, double c, double s) noexcept {
+    const double c2 = c * c - s * s, s2 = 2 * c * s;
+    for (Eigen::Index j = 0; j < rows.cols(); ++j) {
+      const double shear = rows(1, j), tilt = rows(3, j);
+      rows(1, j) = c2 * shear + s2 * rows(2, j);
+      rows(2, j) = c2 * rows(2, j) - s2 * shear;
+      rows(3, j) = c * tilt + s * rows(4, j);
+      rows(4, j) = c * rows(4, j) - s * tilt;
+    }
+  }
+  // `give`; W, too, where D has an eigenvalue below a tenth.
+  void hold(double nu, double a) noexcept {
+    const double unit = 3 / (32 * a * a * a);
+    Moments root;  // of 1 / D_near
+    root << 2 * (1 - nu), 2 - nu, 2 - nu, 4 * (1 - nu), 4 * (1 - nu);
+    for (int r = 0; r < 5; ++r) root[r] = 1 / std::sqrt(unit * root[r]);
+    MomentMatrix D;
+    SpdSystem<5> system{};
+    const auto fill = [&system, &D] {
+      for (int r = 0; r < 5; ++r)
+        for (int c = 0; c <= r; ++c) system.at(std::size_t(r), std::size_t(c)) = D(r, c);
+    };
+    for (int r = 0; r < 5; ++r)
+      for (int c = 0; c < 5; ++c) D(r, c) = root[r] * W(r, c) * root[c] + (r == c ? 1 : 0);
+    fill();
+    SpdSystem<5> less = system;
+    for (std::size_t r = 0; r < 5; ++r) less.at(r, r) -= 0.1;
+    if (!less.factor(5)) {
+      hold_above(D, 0.1);
+      for (int r = 0; r < 5; ++r)
+        for (int c = 0; c < 5; ++c) W(r, c) = (D(r, c) - (r == c ? 1 : 0)) / (root[r] * root[c]);
+      fill();
+    }
+    give.setZero();
+    if (!system.factor(5)) return;
+    for (int c = 0; c < 5; ++c) {
+      system.b.fill(0);
+      system.b[std::size_t(c)] = share * root[c];
+      system.substitute(5);
+      for (int r = 0; r < 5; ++r) give(r, c) = root[r] * system.b[std::size_t(r)];
+    }
+  }
 };
 
 }  // namespace palpate::detail

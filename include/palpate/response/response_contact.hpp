@@ -4,6 +4,7 @@
 /// @file  The tick of a response field: contacts in; forces and the surface's displacement out.
 
 #include <palpate/core/status.hpp>
+#include <palpate/core/vertex_writer.hpp>
 #include <palpate/response/contact_system.hpp>
 #include <palpate/response/response_display.hpp>
 #include <palpate/response/sphere_contact.hpp>
@@ -90,23 +91,8 @@ class ResponseTick {
   /// Displacement of every bound vertex, after `solve`: component i of vertex v at out[v * stride + i].
   template <Real S>
   void displace(const ResponseDisplay& display, S* out, std::size_t stride) noexcept {
-    const auto put = [out, stride, vertex = display.vertex()](std::size_t slot, const Lane3& u) {
-      put_lanes(vertex + slot, u, [out, stride](std::size_t v, float x, float y, float z) {
-        S* to = out + v * stride;
-        to[0] = S(x), to[1] = S(y), to[2] = S(z);
-      });
-    };
+    Put<S> put{detail::VertexWriter<S>(out, stride * sizeof(S)), display.vertex()};
     each(display, put);
-  }
-  /// put(vertex, x, y, z) for each lane.
-  template <class Put>
-  static PALPATE_INLINE void put_lanes(const std::uint32_t* vertex, const detail::Lane3& u,
-                                       const Put& put) noexcept {
-    put(vertex[0], u.x[0], u.y[0],
-        u.z[0]);  // written out: compilers keep a loop, and pass the lanes through memory
-    put(vertex[1], u.x[1], u.y[1], u.z[1]);
-    put(vertex[2], u.x[2], u.y[2], u.z[2]);
-    put(vertex[3], u.x[3], u.y[3], u.z[3]);
   }
 
   /// The same, handed out: emit(slot, u) with a lane of displacements from that slot on; a vertex may have several slots,
@@ -143,7 +129,15 @@ class ResponseTick {
   using Lane = detail::Lane;
   using Lane3 = detail::Lane3;
   using Bend = detail::BentEdges::OfTriangle;
-  static constexpr std::uint32_t lanes = Lane::SizeAtCompileTime;
+  template <Real S>
+  struct Put {
+    detail::VertexWriter<S> to;
+    const std::uint32_t* vertex;
+    PALPATE_INLINE void operator()(std::size_t slot, const Lane3& u) const noexcept {
+      to.put_apart([this, slot](std::size_t k) { return vertex[slot + k]; }, u.x, u.y, u.z);
+    }
+  };
+  static constexpr std::uint32_t lanes = detail::lane_size;
 
   // Near fields and columns of all contacts, summed at the solve mesh's vertices.
   void combine() noexcept {
@@ -179,11 +173,12 @@ class ResponseTick {
       if (carried < 1) near.scale(static_cast<float>(carried));
       float* own = &near_[c * 3 * n];
       for (std::size_t v = 0; v < n; v += lanes) {
-        const Lane3 u = near({Lane::Map(field_->coordinate(0) + v), Lane::Map(field_->coordinate(1) + v),
-                              Lane::Map(field_->coordinate(2) + v)});
-        Lane::Map(own + v) = u.x;
-        Lane::Map(own + n + v) = u.y;
-        Lane::Map(own + 2 * n + v) = u.z;
+        const Lane3 u =
+            near({detail::lane_at(field_->coordinate(0) + v), detail::lane_at(field_->coordinate(1) + v),
+                  detail::lane_at(field_->coordinate(2) + v)});
+        detail::store_vector(own + v, u.x);
+        detail::store_vector(own + n + v, u.y);
+        detail::store_vector(own + 2 * n + v, u.z);
       }
       sum += Row(own, size);
     }
@@ -263,10 +258,10 @@ class ResponseTick {
     Out out = emit;  // a copy is in registers: what it writes might be any of it otherwise
     if (bend == nullptr) {
       for (std::uint32_t i = span.begin; i < span.end; i += lanes)
-        out(i, total(Lane::Map(display.b1() + i), Lane::Map(display.b2() + i)));
+        out(i, total(detail::lane_at(display.b1() + i), detail::lane_at(display.b2() + i)));
     } else {
       for (std::uint32_t i = span.begin; i < span.end; i += lanes) {
-        const Lane b1 = Lane::Map(display.b1() + i), b2 = Lane::Map(display.b2() + i);
+        const Lane b1 = detail::lane_at(display.b1() + i), b2 = detail::lane_at(display.b2() + i);
         Lane3 u = total(b1, b2);
         u += (*bend)(b1, b2);
         out(i, u);
@@ -285,8 +280,9 @@ class ResponseTick {
     std::array<Linear, Capacity> own;
     for (auto c : close) own[c] = Linear(&near_[c * 3 * n], n, t);
     for (std::uint32_t i = span.begin; i < span.end; i += lanes) {
-      const Lane b1 = Lane::Map(display.b1() + i), b2 = Lane::Map(display.b2() + i);
-      const Lane3 at{Lane::Map(display.x() + i), Lane::Map(display.y() + i), Lane::Map(display.z() + i)};
+      const Lane b1 = detail::lane_at(display.b1() + i), b2 = detail::lane_at(display.b2() + i);
+      const Lane3 at{detail::lane_at(display.x() + i), detail::lane_at(display.y() + i),
+                     detail::lane_at(display.z() + i)};
       Lane3 u = total(b1, b2);
       if (bend != nullptr) u += (*bend)(b1, b2);
       bool held = false;
@@ -294,10 +290,10 @@ class ResponseTick {
         const detail::ContactNear& k = near_field_[c];
         const Lane rx = at.x - k.place.x(), ry = at.y - k.place.y(), rz = at.z - k.place.z(),
                    r2 = rx * rx + ry * ry + rz * rz;
-        const float nearest = r2.minCoeff();
+        const float nearest = detail::least_of(r2);
         if (nearest >= (reach + k.a) * (reach + k.a)) continue;
         held = held || nearest < 5 * k.a * k.a;  // beyond what a ball's patch can reach
-        const Lane weight = ((reach + k.a - r2.sqrt()) * (4 / reach)).max(0.f).min(1.f);
+        const Lane weight = detail::between((reach + k.a - detail::root(r2)) * (4 / reach), 0, 1);
         const Lane3 exact = k(at), linear = own[c](b1, b2);
         u.x += weight * (exact.x - linear.x);
         u.y += weight * (exact.y - linear.y);
@@ -315,7 +311,7 @@ class ResponseTick {
     const Lane rx = at.x - near.place.x(), ry = at.y - near.place.y(), rz = at.z - near.place.z(),
                r2 = rx * rx + ry * ry + rz * rz;
     if (c.ball > 0) {
-      for (Eigen::Index l = 0; l < lanes; ++l) {
+      for (std::uint32_t l = 0; l < lanes; ++l) {
         if (r2[l] > 4 * near.a * near.a) continue;
         Vec3<double> v(double(u.x[l]), double(u.y[l]), double(u.z[l]));
         detail::rest_on_ball(c.m, c.d.dot(c.m), c.ball, c.a,
@@ -327,7 +323,8 @@ class ResponseTick {
     }
     // Over to the field outside within a fiftieth of the radius: a vertex that comes in moves fast, and does not jump.
     const Vec3<float> d = c.d.template cast<float>();
-    const Lane inside = (51.f - 50.f / near.a * r2.sqrt()).max(0.f).min(1.f) * static_cast<float>(c.grip);
+    const Lane inside =
+        detail::between(51.f - 50.f / near.a * detail::root(r2), 0, 1) * static_cast<float>(c.grip);
     u.x += inside * (d.x() - u.x);
     u.y += inside * (d.y() - u.y);
     u.z += inside * (d.z() - u.z);

@@ -57,7 +57,7 @@ class ResponseDisplay {
         b1_.push_back(static_cast<float>(bound.weight[1]));
         b2_.push_back(static_cast<float>(bound.weight[2]));
         vertex_.push_back(order[i]);
-      } while (last && vertex_.size() % detail::Lane::SizeAtCompileTime != 0);
+      } while (last && vertex_.size() % detail::lane_size != 0);
       span.end = static_cast<std::uint32_t>(vertex_.size());
     }
     size_ = points.size();

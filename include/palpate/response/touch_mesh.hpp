@@ -281,14 +281,22 @@ class TouchMesh {
     for (std::uint32_t k = 0; k < nodes_.size(); ++k) {
       const SolveMesh::Node& node = nodes_[k];
       const Vec3<double> t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
-      const auto towards = [&](std::uint32_t j) -> Eigen::Vector2d {
-        const Vec3<double> d = nodes_[j].source - node.source;
-        return Eigen::Vector2d(d.dot(t1), d.dot(t2)) / d.norm();
+      struct Towards {
+        double p, q, distance;  // part of the unit vector along t1, t2; distance [m]
       };
-      const auto moments = [&](const List& list) {
-        Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
-        for (auto j : list) A += towards(j) * towards(j).transpose();
-        return A;
+      const auto towards = [&](std::uint32_t j) -> Towards {
+        const Vec3<double> d = nodes_[j].source - node.source;
+        const double distance = d.norm();
+        return {d.dot(t1) / distance, d.dot(t2) / distance, distance};
+      };
+      double pp = 0, pq = 0, qq = 0;
+      const auto determinant = [&] { return pp * qq - pq * pq; };
+      const auto find_moments = [&](const List& list) {
+        pp = pq = qq = 0;
+        for (auto j : list) {
+          const Towards to = towards(j);
+          pp += to.p * to.p, pq += to.p * to.q, qq += to.q * to.q;
+        }
       };
       List near;
       const auto gather = [&](const List& from) {
@@ -299,17 +307,19 @@ class TouchMesh {
       gather(ring[k]);
       if (beside_crease[k])
         for (auto l : ring[k]) gather(ring[l]);
-      Eigen::Matrix2d A = moments(near);
-      if (near.size() < 3 || A.determinant() < 0.1 * A.trace() * A.trace()) {  // at most 0.25
+      find_moments(near);
+      if (near.size() < 3 || determinant() < 0.1 * (pp + qq) * (pp + qq)) {  // at most 0.25
         near = ring[k];
-        A = moments(near);
+        find_moments(near);
       }
-      A += 1e-6 * A.trace() * Eigen::Matrix2d::Identity();
-      const Eigen::Matrix2d inverse = A.inverse();
+      const double least = 1e-6 * (pp + qq);
+      pp += least, qq += least;
       Vec3<double> sum = Vec3<double>::Zero();
       for (auto j : near) {
-        const Eigen::Vector2d g = inverse * towards(j) / (nodes_[j].source - node.source).norm();
-        gradient_[k].push_back({j, g[0] * t1 + g[1] * t2});
+        const Towards to = towards(j);
+        const double unit = determinant() * to.distance;
+        gradient_[k].push_back(
+            {j, (qq * to.p - pq * to.q) / unit * t1 + (pp * to.q - pq * to.p) / unit * t2});
         sum += gradient_[k].back().g;
       }
       gradient_[k].push_back({k, -sum});

@@ -144,7 +144,8 @@ TEST_CASE("places are the same put one by one, in a row or anywhere") {
   VertexPlaces one(7), row(7), anywhere(7);
   for (std::uint32_t v = 0; v < 7; ++v) one.set(v, x(v), x(v) + 1, x(v) + 2);
   for (std::uint32_t first : {0u, 4u}) {
-    float at[3][4], mixed[3][4];
+    float at[3][4];
+    detail::Float4 mixed[3];
     for (std::uint32_t k = 0; k < 4; ++k)
       for (std::uint32_t axis = 0; axis < 3; ++axis) {
         at[axis][k] = x(first + k) + float(axis);

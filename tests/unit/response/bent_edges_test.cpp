@@ -47,7 +47,7 @@ TEST_CASE("a quadratic field is drawn exactly on a face, near a contact; far fro
       if (away > reach + 0.005 + 0.02) CHECK(!any);
       if (away > 0.6 * reach || std::min({p.y(), q.y(), r.y()}) < 0.1 - 1e-9) continue;
       REQUIRE(any);
-      const detail::Lane third = detail::Lane::Constant(1.f / 3);
+      const detail::Lane third = detail::four(1.f / 3);
       const detail::Lane3 more = bend(third, third);
       const V drawn = (u(p) + u(q) + u(r)) / 3 + V(more.x[0], more.y[0], more.z[0]),
               linear = (u(p) + u(q) + u(r)) / 3;

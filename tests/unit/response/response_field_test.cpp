@@ -100,7 +100,7 @@ TEST_CASE("near field of second order: the patch moves as one, no jump at its ed
   // What second order adds: to first order the near field undoes the slopes of w.
   const auto at = [&](double along, double down) {
     const V x = c.x + a * along * V(0.8, 0, 0.6) + a * down * c.m;
-    const auto lane = [](double value) { return detail::Lane(detail::Lane::Constant(static_cast<float>(value))); };
+    const auto lane = [](double value) { return detail::four(static_cast<float>(value)); };
     V u = V::Zero();
     for (int order = 0; order < 2; ++order) {
       const detail::Lane3 part = both[order]({lane(x.x()), lane(x.y()), lane(x.z())});

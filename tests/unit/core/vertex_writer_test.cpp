@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <palpate/deformation/vertex_writer.hpp>
+#include <palpate/core/vertex_writer.hpp>
 
 #include <doctest/doctest.h>
 
@@ -44,16 +44,20 @@ TEST_CASE_TEMPLATE(
       for (std::size_t k = 0; k < 3; ++k) place[k].push_back(coordinate(v, k));
     const auto vertex = [&order](std::size_t i) { return order[i]; };
 
-    for (const bool by_fours : {false, true}) {
+    for (const int way : {0, 1, 2}) {  // in one go, by fours in a row or not, by fours
       constexpr unsigned char untouched = 0xa5;
       std::vector<unsigned char> bytes(count * stride + 16, untouched);
       const detail::VertexWriter<T> to(reinterpret_cast<T*>(bytes.data()), stride);
-      if (by_fours) {
+      if (way > 0) {
         for (std::size_t i = 0; i < count; i += 4) {
           const auto part = [&place, i](std::size_t k) {
             return detail::load_vector<detail::Float4>(&place[k][i]);
           };
-          to.put_four([&](std::size_t k) { return vertex(i + k); }, part(0), part(1), part(2));
+          const auto four = [&](std::size_t k) { return vertex(i + k); };
+          if (way == 1)
+            to.put_four(four, part(0), part(1), part(2));
+          else
+            to.put_apart(four, part(0), part(1), part(2));
         }
       } else {
         to.put_all(order.size(), vertex, place[0].data(), place[1].data(), place[2].data());

@@ -30,6 +30,14 @@ class VertexWriter {
   template <class Vertex>
   PALPATE_INLINE void put_four(const Vertex& vertex, Float4 x, Float4 y, Float4 z) const noexcept {
     if (in_a_row(vertex)) return store_interleaved(base_ + stride_ * vertex(0), x, y, z);
+    put_apart(vertex, x, y, z);
+  }
+  /// The same for vertices that hardly ever follow each other.
+  template <class Vertex>
+  PALPATE_INLINE void put_apart(const Vertex& vertex, Float4 x, Float4 y, Float4 z) const noexcept {
+    if constexpr (sizeof(T) == sizeof(float))
+      return store_apart(base_ + stride_ * vertex(0), base_ + stride_ * vertex(1),
+                         base_ + stride_ * vertex(2), base_ + stride_ * vertex(3), x, y, z);
     put(vertex(0), T(x[0]), T(y[0]), T(z[0]));
     put(vertex(1), T(x[1]), T(y[1]), T(z[1]));
     put(vertex(2), T(x[2]), T(y[2]), T(z[2]));
