@@ -132,10 +132,8 @@ template <class V>
 /// Lowers `least`, entry by entry, to those of x, four by four.
 template <class V>
 PALPATE_INLINE void take_least(Float4& least, const V& x) noexcept {
-  for (std::size_t from = 0; from < sizeof(V) / sizeof(float); from += 4) {
-    const Float4 four = four_of(x, from);
-    least = four < least ? four : least;
-  }
+  for (std::size_t from = 0; from < sizeof(V) / sizeof(float); from += 4)
+    least = smaller(four_of(x, from), least);
 }
 
 }  // namespace palpate::detail

@@ -68,7 +68,7 @@ struct ContactNear {
               u.in_plane * pz + u.normal * m.z()};
     }
     const auto u = disc.flat(normal, px * along.x() + py * along.y() + pz * along.z(), nu);
-    Lane in_plane = u.in_plane, down = u.normal, back{};
+    Lane in_plane = u.in_plane, down = u.normal, turned_back{};
     Lane3 out{u.along * along.x(), u.along * along.y(), u.along * along.z()};
     if (second) {
       const auto d = disc.double_force(nu);
@@ -78,7 +78,8 @@ struct ContactNear {
       const Lane q_r = (radial / a) * arc_sine(inverse) * near2 * inverse /
                        root(larger(beyond + rim2 * near2, four(1e-12f)));
       in_plane += dipole * d.in_plane + q_r;
-      back = near2 * near2 * near2 * near2;
+      const Lane back = near2 * near2 * near2 * near2;
+      turned_back = back * inverse;
       down += dipole * d.normal + sink * near2 * near2 * inverse * root(beyond);
       out.x -= back * push.x();
       out.y -= back * push.y();
@@ -89,7 +90,7 @@ struct ContactNear {
       const auto t = disc.tilt(tp, nu);
       in_plane += t.in_plane;
       // The patch itself does not turn: what second order does at its edge is taken back, as the push is.
-      down += t.normal - back * root(near2) * (px * turn.x() + py * turn.y() + pz * turn.z());
+      down += t.normal - turned_back * (px * turn.x() + py * turn.y() + pz * turn.z());
       out.x += t.along * tilt.x();
       out.y += t.along * tilt.y();
       out.z += t.along * tilt.z();

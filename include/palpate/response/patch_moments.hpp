@@ -63,9 +63,11 @@ struct PatchMoments {
         const PatchTable::Moments& row = field.table().moments(k, level.below + l);
         for (int r = 0, e = 0; r < 5; ++r) {
           for (int j = 0; j < 3; ++j) mean(r, j) += part * double(row.mean[r][j]);
-          for (int j = 0; j <= r; ++j, ++e) own(r, j) = own(j, r) += part * double(row.own[e]);
+          for (int j = 0; j <= r; ++j) own(r, j) += part * double(row.own[e++]);
         }
       }
+      for (int r = 0; r < 5; ++r)
+        for (int j = 0; j < r; ++j) own(j, r) = own(r, j);
       turn(mean, c, s);
       turn(own, c, s);
       own.transposeInPlace();

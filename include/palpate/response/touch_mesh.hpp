@@ -314,10 +314,11 @@ class TouchMesh {
       }
       const double least = 1e-6 * (pp + qq);
       pp += least, qq += least;
+      const double det = determinant();
       Vec3<double> sum = Vec3<double>::Zero();
       for (auto j : near) {
         const Towards to = towards(j);
-        const double unit = determinant() * to.distance;
+        const double unit = det * to.distance;
         gradient_[k].push_back(
             {j, (qq * to.p - pq * to.q) / unit * t1 + (pp * to.q - pq * to.p) / unit * t2});
         sum += gradient_[k].back().g;
