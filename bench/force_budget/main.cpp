@@ -182,6 +182,8 @@ struct Bench {
     body<S>("cylinder", Cylinder<S>({.radius = S(0.05), .half_height = S(0.04)}), 0.04);
     const Superellipsoid<S> pill({.axes = Vec3<S>(S(0.06), S(0.04), S(0.04)), .e1 = S(0.5), .e2 = S(0.5)});
     body<S>("superellipsoid", pill, 0.04);
+    body<S>("superellipsoid e1 0.3 e2 0.7",  // powers that are no whole numbers
+            Superellipsoid<S>({.axes = Vec3<S>(S(0.06), S(0.04), S(0.04)), .e1 = S(0.3), .e2 = S(0.7)}), 0.04);
     body<S>("superellipsoid sampled", SampledSurface<Superellipsoid<S>>(pill, {.spacing = S(2e-3)}), 0.04);
     const MeshSurface<S> mesh(TriangleMesh<S>(ellipsoid<S>().mesh(2000)));
     add<ContactSolver<MeshSurface<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<8>>>(

@@ -63,6 +63,9 @@ class CandidateTreeSuite {
     B body;
     SurfacePoint<S> closest(const V& x) const noexcept { return body.closest(x); }
     Penetration<S> penetration(const V& x) const noexcept { return body.penetration(x); }
+    void penetration(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
+      body.penetration(x, in);
+    }
     S reach() const noexcept { return body.reach(); }
   };
 
@@ -134,7 +137,7 @@ class CandidateTreeSuite {
     require_equal(compare(body, CandidatesFrom(without_search, host.tree()), pin(mesh), mesh, 30));
   }
 
-  /// An exact body beside a coarse mesh of it; its eight points at once are handed on.
+  /// An exact body beside a coarse mesh of it; its points at once are handed on.
   void exact_body() {
     const Ellipsoid<S> egg({.axes = V(S(0.06), S(0.03), S(0.02))});
     const TriangleMesh<S> mesh(egg.mesh(800));

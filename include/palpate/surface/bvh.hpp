@@ -34,10 +34,9 @@ class TriangleBvh {
 
   /// A point of the mesh: sum of weight[k] times corner k of the triangle.
   struct Nearest {
-    std::uint32_t triangle = none;
-    Vec3<S> weight = Vec3<S>::Zero();
-    Vec3<S> position = Vec3<S>::Zero();
-    S distance2 = (std::numeric_limits<S>::max)();
+    std::uint32_t triangle;
+    Vec3<S> weight, position;
+    S distance2;
   };
   struct Hit {
     std::uint32_t triangle = none;  ///< `none`: no hit
@@ -87,22 +86,31 @@ class TriangleBvh {
   template <class Grow, class Visit>
   Nearest closest_and_near(const Vec3<S>& x, std::uint32_t start, const Grow& grow,
                            const Visit& visit) const noexcept {
+    return closest_among(x, start, grow, visit,
+                         [this](const Cull& cull, const float& limit, const auto& meet) {
+                           walk(
+                               cull, limit, [](std::uint32_t, std::size_t, float) { return true; }, meet);
+                         });
+  }
+
+  /// The same of `start` and the triangles that over(cull, limit, meet) gives to meet(); `limit` falls meanwhile.
+  template <class Grow, class Visit, class Over>
+  Nearest closest_among(const Vec3<S>& x, std::uint32_t start, const Grow& grow, const Visit& visit,
+                        const Over& over) const noexcept {
     Nearest best = on_triangle(x, start);
     if (!is_finite(best.distance2)) return best;
     const Cull cull = this->cull(x);
     S bound = grow(best.distance2);
     float limit = cull.limit(bound);
-    walk(
-        cull, limit, [](std::uint32_t, std::size_t, float) { return true; },
-        [&](std::uint32_t triangle) {
-          const Nearest here = on_triangle(x, triangle);
-          if (here.distance2 > bound) return;
-          visit(here);
-          if (!(here.distance2 < best.distance2)) return;
-          best = here;
-          bound = grow(best.distance2);
-          limit = cull.limit(bound);
-        });
+    over(cull, limit, [&](std::uint32_t triangle) {
+      const Nearest here = on_triangle(x, triangle);
+      if (here.distance2 > bound) return;
+      visit(here);
+      if (!(here.distance2 < best.distance2)) return;
+      best = here;
+      bound = grow(best.distance2);
+      limit = cull.limit(bound);
+    });
     return best;
   }
 
@@ -136,7 +144,7 @@ class TriangleBvh {
     for (;;) {
       const Node& node = nodes_[here.node];
       std::array<float, Node::width> d2;
-      distances(node, cull.x, d2);
+      node.distances(cull.x, d2);
       Entry next{none, 0.0f};
       for (std::uint32_t i = 0; i < node.count; ++i) {
         if (!(d2[i] <= limit) || !enter(here.node, i, d2[i])) continue;
@@ -286,18 +294,6 @@ class TriangleBvh {
 
   [[nodiscard]] static bool usable(const Vec3<S>& p) noexcept {
     return is_finite(p) && p.cwiseAbs().maxCoeff() <= S(1e6L);
-  }
-
-  /// Squared distances to all eight boxes.
-  static void distances(const Node& node, const std::array<float, 3>& x,
-                        std::array<float, Node::width>& d2) noexcept {
-    using Lanes = Eigen::Array<float, Node::width, 1>;
-    using In = Eigen::Map<const Lanes, Eigen::Unaligned>;
-    const In ux(node.low[0].data()), vx(node.high[0].data()), uy(node.low[1].data()), vy(node.high[1].data()),
-        uz(node.low[2].data()), vz(node.high[2].data());
-    Eigen::Map<Lanes, Eigen::Unaligned>(d2.data()) = (ux - x[0]).max(x[0] - vx).max(0.0f).square() +
-                                                     (uy - x[1]).max(x[1] - vy).max(0.0f).square() +
-                                                     (uz - x[2]).max(x[2] - vz).max(0.0f).square();
   }
 
   /// Where the ray enters child i's box, widened by `guard` [m]; beyond every t when it misses.

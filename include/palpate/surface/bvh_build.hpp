@@ -3,6 +3,7 @@
 
 /// @file  How a tree of boxes is built: surface area heuristic over bins. Set-up only.
 
+#include <palpate/core/float_vector.hpp>
 #include <palpate/core/vector.hpp>
 
 #include <algorithm>
@@ -34,6 +35,20 @@ struct BvhNode {
   std::array<std::uint32_t, width> child;             // leaf: triangles; else nodes
   std::uint32_t count;                                // children; boxes past them are never looked at
   std::uint32_t leaf;                                 // 1 or 0
+
+  /// Squared distances from x to all eight boxes.
+  void distances(const std::array<float, 3>& x, std::array<float, width>& d2) const noexcept {
+    for (std::size_t from = 0; from < width; from += 4) {
+      Float4 sum{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Float4 here = four(x[k]), away = larger(larger(load_vector<Float4>(&low[k][from]) - here,
+                                                             here - load_vector<Float4>(&high[k][from])),
+                                                      Float4{});
+        sum += away * away;
+      }
+      store_vector(&d2[from], sum);
+    }
+  }
 };
 
 /// Splits in two along the longest axis of the centres, where area times count is least over 16 bins

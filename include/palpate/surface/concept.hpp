@@ -58,6 +58,13 @@ template <Real S>
 struct alignas(64) PenetrationLanes {
   std::array<S, lane_count> depth;                             ///< [m]
   std::array<S, lane_count> gradient_x, gradient_y, gradient_z;  ///< [-]
+
+  void set(std::size_t i, const Penetration<S>& one) noexcept {
+    depth[i] = one.depth;
+    gradient_x[i] = one.gradient.x();
+    gradient_y[i] = one.gradient.y();
+    gradient_z[i] = one.gradient.z();
+  }
 };
 
 namespace detail {
@@ -84,13 +91,7 @@ template <class V, Real S>
 /// Penetration of the first `count` points with the surface's function for one.
 template <class B, Real S>
 inline void penetrate_one_by_one(const B& body, const PointLanes<S>& x, std::size_t count, PenetrationLanes<S>& in) noexcept {
-  for (std::size_t i = 0; i < count; ++i) {
-    const Penetration<S> one = body.penetration(Vec3<S>(x.x[i], x.y[i], x.z[i]));
-    in.depth[i] = one.depth;
-    in.gradient_x[i] = one.gradient.x();
-    in.gradient_y[i] = one.gradient.y();
-    in.gradient_z[i] = one.gradient.z();
-  }
+  for (std::size_t i = 0; i < count; ++i) in.set(i, body.penetration(Vec3<S>(x.x[i], x.y[i], x.z[i])));
 }
 }  // namespace detail
 

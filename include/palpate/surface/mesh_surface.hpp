@@ -7,6 +7,7 @@
 #include <palpate/surface/crease_normals.hpp>
 #include <palpate/surface/distance_grid.hpp>
 #include <palpate/surface/near_blend.hpp>
+#include <palpate/surface/near_triangles.hpp>
 #include <palpate/surface/shape_tools.hpp>
 #include <palpate/surface/triangle_mesh.hpp>
 
@@ -99,14 +100,45 @@ class MeshSurface {
 
   /// Distance to the surface from inside and a continuous outward direction; outside {0, 0}.
   [[nodiscard]] Penetration<S> penetration(const Vec3<S>& x) const noexcept {
-    if (!within(x)) return {S(0), Vec3<S>::Zero()};
-    const auto bounds = grid_.at(x);
-    if (bounds.lower > S(0)) return {S(0), Vec3<S>::Zero()};
+    std::uint32_t start;
+    if (!may_be_inside(x, start)) return {S(0), Vec3<S>::Zero()};
     Seen seen;
-    const Nearest near = blend_.search(bvh_, x, bounds.triangle, seen);
-    const S d = -distance(x, near);
-    if (!(d > S(0))) return {S(0), Vec3<S>::Zero()};
-    return {d, normals_.patches == 1 ? patch_direction(x, near, d, seen) : direction(x, near, d)};
+    const Nearest near = blend_.search(bvh_, x, start, seen);
+    return below(x, near, seen);
+  }
+
+  /// The same for `lane_count` points; where they are close together, by one walk of the tree.
+  void penetration(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
+    std::array<bool, lane_count> open;
+    Vec3<S> low = upper_, high = lower_;
+    std::uint32_t start = 0;
+    for (std::size_t i = 0; i < lane_count; ++i) {
+      const Vec3<S> p(x.x[i], x.y[i], x.z[i]);
+      open[i] = may_be_inside(p, start);
+      if (open[i]) low = low.cwiseMin(p), high = high.cwiseMax(p);
+      in.set(i, {S(0), Vec3<S>::Zero()});
+    }
+    if (!(low.array() <= high.array()).all()) return;  // none
+    const Vec3<S> middle = low + (high - low) / S(2);
+    const S spread = (high - low).norm() / S(2);
+    const Nearest centre = bvh_.closest(middle, start);
+    // No point is farther from the mesh than the middle is and its own distance from there.
+    const S radius = std::sqrt(blend_.band(std::sqrt(centre.distance2) + spread)) + spread;
+    const detail::NearTriangles<S> around(bvh_, middle, radius);
+    if (!around.complete()) return detail::penetrate_one_by_one(*this, x, lane_count, in);
+    Vec3<S> before = Vec3<S>::Constant(std::numeric_limits<S>::infinity());
+    Penetration<S> one{};
+    for (std::size_t i = 0; i < lane_count; ++i) {
+      if (!open[i]) continue;
+      const Vec3<S> p(x.x[i], x.y[i], x.z[i]);
+      if (p != before) {  // lanes without a point of their own repeat the last one
+        Seen seen;
+        const Nearest near = blend_.search(around, p, centre.triangle, seen);
+        one = below(p, near, seen);
+        before = p;
+      }
+      in.set(i, one);
+    }
   }
 
   [[nodiscard]] bool inside(const Vec3<S>& x) const noexcept {
@@ -170,6 +202,21 @@ class MeshSurface {
     return is_finite(x) && (x.array() >= lower_.array()).all() && (x.array() <= upper_.array()).all();
   }
 
+  /// False: outside. True: unknown; `start` is a triangle near x.
+  [[nodiscard]] bool may_be_inside(const Vec3<S>& x, std::uint32_t& start) const noexcept {
+    if (!within(x)) return false;
+    const auto bounds = grid_.at(x);
+    start = bounds.triangle;
+    return !(bounds.lower > S(0));
+  }
+
+  /// Penetration of x, whose closest point is `near`.
+  [[nodiscard]] Penetration<S> below(const Vec3<S>& x, const Nearest& near, const Seen& seen) const noexcept {
+    const S d = -distance(x, near);
+    if (!(d > S(0))) return {S(0), Vec3<S>::Zero()};
+    return {d, normals_.patches == 1 ? patch_direction(x, near, d, seen) : direction(x, near, d)};
+  }
+
   /// Interpolated normal at a point of the mesh.
   [[nodiscard]] Vec3<S> normal(const Nearest& at) const noexcept {
     Vec3<S> n = Vec3<S>::Zero();
@@ -216,7 +263,7 @@ class MeshSurface {
       const S d_p = std::sqrt(foot.distance2), w = S(2) - d_p / d;
       if (!(w > S(0))) continue;
       Seen none;
-      none.count = none.triangle.size() + 1;  // incomplete: walk
+      none.count = none.nearest.size() + 1;  // incomplete: walk
       sum += w * w * patch_direction(x, foot, d_p, none);
       total += w * w;
     }

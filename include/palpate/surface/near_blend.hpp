@@ -10,14 +10,14 @@ namespace palpate::detail {
 /// Triangles met by one search, as far as there is room.
 template <Real S>
 struct Seen {
-  std::array<std::uint32_t, 64> triangle;
-  std::array<S, 64> distance2;
+  using Nearest = typename TriangleBvh<S>::Nearest;
+  std::array<Nearest, 64> nearest;
   std::size_t count = 0;
-  void add(const typename TriangleBvh<S>::Nearest& n) noexcept {
-    if (count < triangle.size()) triangle[count] = n.triangle, distance2[count] = n.distance2;
+  void add(const Nearest& n) noexcept {
+    if (count < nearest.size()) nearest[count] = n;
     ++count;
   }
-  [[nodiscard]] bool complete() const noexcept { return count <= triangle.size(); }
+  [[nodiscard]] bool complete() const noexcept { return count <= nearest.size(); }
 };
 
 /// Weighted mean of values at the points x_i of the triangles next to the closest one, a continuous function of x:
@@ -40,8 +40,9 @@ class NearBlend {
     return radius * radius;
   }
 
-  /// The closest point of the mesh, and in `seen` what the mean needs.
-  [[nodiscard]] Nearest search(const TriangleBvh<S>& tree, const Vec3<S>& x, std::uint32_t start,
+  /// The closest point of the mesh, and in `seen` what the mean needs. `tree`: a TriangleBvh or NearTriangles.
+  template <class Tree>
+  [[nodiscard]] Nearest search(const Tree& tree, const Vec3<S>& x, std::uint32_t start,
                                Seen<S>& seen) const noexcept {
     return tree.closest_and_near(
         x, start, [this](S d2) { return band(std::sqrt(d2)); }, [&seen](const Nearest& n) { seen.add(n); });
@@ -63,7 +64,7 @@ class NearBlend {
     };
     if (seen.complete()) {
       for (std::size_t i = 0; i < seen.count; ++i)
-        if (seen.distance2[i] < limit) add(tree.on_triangle(x, seen.triangle[i]));
+        if (seen.nearest[i].distance2 < limit) add(seen.nearest[i]);
     } else {
       tree.overlap(x, radius, add);
     }

@@ -48,15 +48,11 @@ class Superellipsoid {
     Vec3<S> centre = Vec3<S>::Zero();         ///< m [m]
   };
 
-  explicit Superellipsoid(const Params& params) : p_(params) {
-    for (int i = 0; i < 3; ++i)
-      detail::require_size(p_.axes[i], "Superellipsoid", "axes [m] must be in [1e-6, 1e6]");
-    detail::require_ratio(p_.axes, S(20), "Superellipsoid", "ratio of axes must be at most 20");
-    require_exponent(p_.e1, "exponent e1 must be in [0.1, 1]");
-    require_exponent(p_.e2, "exponent e2 must be in [0.1, 1]");
-    detail::require_centre(p_.centre, "Superellipsoid");
-    norm_ = detail::NestedNorm<S>{S(2) / p_.e2, S(2) / p_.e1};
-    min_ = p_.axes.minCoeff();
+  explicit Superellipsoid(const Params& params)
+      : p_(checked(params)),
+        norm_{S(2) / p_.e2, S(2) / p_.e1},
+        min_(p_.axes.minCoeff()),
+        near_(p_.axes / min_, norm_.p, norm_.q) {
     for (std::size_t i = 0; i < seeds; ++i)
       for (std::size_t j = 0; j < seeds; ++j)
         seed_[i * seeds + j] =
@@ -110,8 +106,11 @@ class Superellipsoid {
     constexpr S guard = S(1) + S(64) * std::numeric_limits<S>::epsilon();
     for (int i = 0; i < 3; ++i)
       if (d[i] > (p_.axes[i] + r) * guard) return true;
-    const S n = norm_.value(d.cwiseQuotient(p_.axes));
-    return is_finite(n) && n > (S(1) + r / min_) * guard;
+    const Vec3<S> z = d.cwiseQuotient(p_.axes);
+    const S limit = (S(1) + r / min_) * guard;
+    if (z.squaredNorm() <= limit * limit) return false;  // N is at most the length: its exponents are at least 2
+    const S n = norm_.value(z);
+    return is_finite(n) && n > limit;
   }
 
   /// First hit at t >= 0; from inside, where the ray leaves. Direction of any length; zero or not finite: no hit.
@@ -201,6 +200,15 @@ class Superellipsoid {
     S distance;
   };
 
+  [[nodiscard]] static const Params& checked(const Params& p) {
+    for (int i = 0; i < 3; ++i)
+      detail::require_size(p.axes[i], "Superellipsoid", "axes [m] must be in [1e-6, 1e6]");
+    detail::require_ratio(p.axes, S(20), "Superellipsoid", "ratio of axes must be at most 20");
+    require_exponent(p.e1, "exponent e1 must be in [0.1, 1]");
+    require_exponent(p.e2, "exponent e2 must be in [0.1, 1]");
+    detail::require_centre(p.centre, "Superellipsoid");
+    return p;
+  }
   static void require_exponent(S e, const char* rule) {
     constexpr S slack = S(4) * std::numeric_limits<S>::epsilon();
     if (!is_finite(e) || !(e >= S(0.1) - slack && e <= S(1)))
@@ -209,27 +217,29 @@ class Superellipsoid {
   // Penetration of N points: at once, and the general way for those that are too deep for that or do not settle.
   template <int N>
   void near_surface(const S* x, const S* y, const S* z, S* depth, S* nx, S* ny, S* nz) const noexcept {
-    using Near = detail::SuperellipsoidNear<S, N>;
-    using In = Eigen::Map<const typename Near::Lanes>;
-    const typename Near::Axes r{(In(x) - p_.centre.x()).abs() / min_, (In(y) - p_.centre.y()).abs() / min_,
-                                (In(z) - p_.centre.z()).abs() / min_};
-    const typename Near::Result near = Near::solve(p_.axes / min_, norm_.p, norm_.q, r);
-    for (int i = 0; i < N; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      depth[k] = nx[k] = ny[k] = nz[k] = S(0);
-      if (!near.any_inside || !near.inside[k]) continue;
+    using In = Eigen::Map<const detail::LaneArray<S, N>>;
+    const typename detail::SuperellipsoidNear<S>::template Axes<N> r{(In(x) - p_.centre.x()).abs() / min_,
+                                                                     (In(y) - p_.centre.y()).abs() / min_,
+                                                                     (In(z) - p_.centre.z()).abs() / min_};
+    const auto near = near_.template solve<N>(r);
+    std::array<bool, static_cast<std::size_t>(N)> done;
+    for (std::size_t k = 0; k < done.size(); ++k) {
+      const auto i = static_cast<Eigen::Index>(k);
+      const S below = near.any_near ? near.depth[i] * min_ : S(0);
+      done[k] = !near.near[k] || (near.settled[k] && below < reach_);
+      const bool inside = near.settled[k] && done[k] && below > S(0);
+      depth[k] = inside ? below : S(0);
+      nx[k] = inside ? (x[k] < p_.centre.x() ? -near.normal[0][i] : near.normal[0][i]) : S(0);
+      ny[k] = inside ? (y[k] < p_.centre.y() ? -near.normal[1][i] : near.normal[1][i]) : S(0);
+      nz[k] = inside ? (z[k] < p_.centre.z() ? -near.normal[2][i] : near.normal[2][i]) : S(0);
+    }
+    for (std::size_t k = 0; k < done.size(); ++k) {
+      if (done[k]) continue;
       const Vec3<S> at = Vec3<S>(x[k], y[k], z[k]) - p_.centre;
-      Vec3<S> normal;
-      if (near.settled[k] && near.depth[i] * min_ < reach_) {
-        depth[k] = (std::max)(near.depth[i] * min_, S(0));
-        normal = Vec3<S>(near.normal[0][i], near.normal[1][i], near.normal[2][i]);
-      } else {
-        const Foot foot = solve(at.cwiseAbs());
-        depth[k] = -foot.distance;
-        normal = foot.normal;
-      }
-      normal = signs_of(at, normal);
-      nx[k] = normal.x(), ny[k] = normal.y(), nz[k] = normal.z();
+      const Foot foot = solve(at.cwiseAbs());
+      if (!(foot.distance < S(0))) continue;
+      const Vec3<S> normal = signs_of(at, foot.normal);
+      depth[k] = -foot.distance, nx[k] = normal.x(), ny[k] = normal.y(), nz[k] = normal.z();
     }
   }
 
@@ -354,9 +364,10 @@ class Superellipsoid {
   }
 
   Params p_;
-  detail::NestedNorm<S> norm_{};
-  std::array<Vec3<S>, seeds * seeds> seed_;
+  detail::NestedNorm<S> norm_;
   S min_, reach_ = S(0);
+  detail::SuperellipsoidNear<S> near_;
+  std::array<Vec3<S>, seeds * seeds> seed_;
 };
 
 static_assert(ParametricSurface<Superellipsoid<float>> && ParametricSurface<Superellipsoid<double>>);

@@ -213,6 +213,41 @@ TEST_CASE_TEMPLATE("mesh surface: queries that are not finite or absurd", S, flo
   }
 }
 
+TEST_CASE_TEMPLATE("mesh surface: many points at once are as one by one, close together or not", S, float,
+                   double) {
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<S> uniform(S(-1), S(1));
+  int touching = 0;
+  for (const auto& [name, data] : test::five_meshes<S>(2000)) {
+    INFO(name);
+    const MeshSurface<S> body{TriangleMesh<S>(data)};
+    const S size = (body.upper() - body.lower()).maxCoeff();
+    for (int k = 0; k < 200; ++k) {
+      const Vec3<S> about = data.vertices[random() % data.vertices.size()];
+      const S spread = size * (k % 4 == 0 ? S(1) : k % 4 == 1 ? S(0.1L) : S(0.01L));
+      PointLanes<S> x;
+      for (std::size_t i = 0; i < lane_count; ++i) {
+        x.x[i] = about.x() + spread * uniform(random);
+        x.y[i] = about.y() + spread * uniform(random);
+        x.z[i] = about.z() + spread * uniform(random);
+      }
+      if (k % 5 == 0) x.y[3] = std::numeric_limits<S>::quiet_NaN();
+      if (k % 7 == 0) x.z[8] = std::numeric_limits<S>::infinity();
+      x.x[15] = x.x[14], x.y[15] = x.y[14], x.z[15] = x.z[14];
+      PenetrationLanes<S> in;
+      body.penetration(x, in);
+      for (std::size_t i = 0; i < lane_count; ++i) {
+        const Penetration<S> one = body.penetration(Vec3<S>(x.x[i], x.y[i], x.z[i]));
+        CHECK(in.depth[i] == one.depth);  // of the same triangle, or of its neighbour at the same place
+        const Vec3<S> g(in.gradient_x[i], in.gradient_y[i], in.gradient_z[i]);
+        CHECK_ABSOLUTE((g - one.gradient).norm(), 0, test::ulps<S>(64));  // added up in another order
+        touching += one.depth > S(0);
+      }
+    }
+  }
+  CHECK(touching > 2000);
+}
+
 TEST_CASE("mesh surface: no heap in a query, and the same bits for the same input") {
   const MeshSurface<double> body{TriangleMesh<double>(test::blob<double>(2000))};
   const MeshSurface<double> box{TriangleMesh<double>(Box<double>({}).mesh(500))};
@@ -225,6 +260,10 @@ TEST_CASE("mesh surface: no heap in a query, and the same bits for the same inpu
           0.04 * random_direction<double>(random) * static_cast<double>(random() % 1000) / 1000;
       const auto p = b->penetration(x), q = b->penetration(x);
       differ += p.depth != q.depth || p.gradient != q.gradient;
+      PenetrationLanes<double> in;
+      PointLanes<double> lanes;
+      lanes.x.fill(x.x()), lanes.y.fill(x.y()), lanes.z.fill(x.z());
+      b->penetration(lanes, in);
       (void)b->closest(x);
       (void)b->separated(x, 0.001);
       (void)b->raycast(x, x);
