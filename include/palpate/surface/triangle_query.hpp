@@ -16,8 +16,8 @@ namespace palpate::detail {
 /// point lies on an edge or a vertex. Without area the answer is still a point of the triangle. Source:
 /// [ericson2004].
 template <Real S>
-[[nodiscard]] inline Vec3<S> closest_on_triangle(const Vec3<S>& x, const Vec3<S>& a, const Vec3<S>& b,
-                                                 const Vec3<S>& c) noexcept {
+[[nodiscard]] PALPATE_INLINE Vec3<S> closest_on_triangle(const Vec3<S>& x, const Vec3<S>& a, const Vec3<S>& b,
+                                                         const Vec3<S>& c) noexcept {
   // Coordinate by coordinate, because this is where a query's time goes: gcc 12 at -O2 does not inline all of Eigen.
   const S ux = b[0] - a[0], uy = b[1] - a[1], uz = b[2] - a[2], vx = c[0] - a[0], vy = c[1] - a[1],
           vz = c[2] - a[2];
