@@ -127,7 +127,7 @@ class MeshSurface {
     const detail::NearTriangles<S> around(bvh_, middle, radius);
     if (!around.complete()) return detail::penetrate_one_by_one(*this, x, lane_count, in);
     Vec3<S> before = Vec3<S>::Constant(std::numeric_limits<S>::infinity());
-    Penetration<S> one{};
+    Penetration<S> one{S(0), Vec3<S>::Zero()};
     for (std::size_t i = 0; i < lane_count; ++i) {
       if (!open[i]) continue;
       const Vec3<S> p(x.x[i], x.y[i], x.z[i]);
@@ -163,6 +163,7 @@ class MeshSurface {
     }
     const auto bounds = grid_.at(c);
     if (bounds.lower > grown || bounds.upper <= grown) return bounds.lower > grown;
+    if (bvh_.on_triangle(c, bounds.triangle).distance2 <= grown * grown) return false;
     return distance(c, bvh_.closest(c, bounds.triangle)) > grown;
   }
 

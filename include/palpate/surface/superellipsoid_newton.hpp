@@ -79,8 +79,8 @@ class SuperellipsoidNewton {
   template <int N>
   struct Start {
     Foot<N> foot;
-    LaneMask<N> near,
-        shallow;  // inside, or outside by a thousandth; and so far from the centre that it has a direction
+    LaneMask<N> near;     // inside, or outside by a thousandth
+    LaneMask<N> shallow;  // and so far from the centre that there is a direction
     bool any_near;
   };
   template <int N>
