@@ -3,6 +3,7 @@
 
 /// @file  One triangle against a point and against a ray.
 
+#include <palpate/config.hpp>
 #include <palpate/core/vector.hpp>
 
 #include <array>
