@@ -38,9 +38,10 @@ class SuperellipsoidNear {
     // A step's error is the square of its length, times a curvature over another.
     const S small = (std::max)(S(0.01) * std::sqrt(epsilon), S(64) * epsilon);
     Result<N> result;
-    auto start = this->start<N>(x);
-    result.near = start.near, result.any_near = start.any_near, result.settled = {};
-    if (!start.any_near) return result;
+    Start<N> start;
+    result.any_near = begin<N>(x, start);
+    result.near = start.near, result.settled = {};
+    if (!result.any_near) return result;
     const auto step = exact_.template descend<N>(x, start, small, 8);
     const Vec3<S>& axes = exact_.axes();
     const auto& z = start.foot.z;
@@ -60,27 +61,30 @@ class SuperellipsoidNear {
   }
 
  private:
-  // Where float is not enough to begin with, x itself is the start.
   template <int N>
-  [[nodiscard]] typename SuperellipsoidNewton<S>::template Start<N> start(const Axes<N>& x) const noexcept {
+  using Start = typename SuperellipsoidNewton<S>::template Start<N>;
+
+  // False if no lane is near. Where float is not enough to begin with, x itself is the start.
+  template <int N>
+  [[nodiscard]] bool begin(const Axes<N>& x, Start<N>& start) const noexcept {
     if constexpr (std::same_as<S, float> || N == 1) {
-      return exact_.template on_ray<N>(x);
+      return exact_.template on_ray<N>(x, start);
     } else {
       const std::array<LaneArray<float, N>, 3> y{x[0].template cast<float>(), x[1].template cast<float>(),
                                                  x[2].template cast<float>()};
-      auto first = rough_.template on_ray<N>(y);
-      typename SuperellipsoidNewton<S>::template Start<N> result;
-      result.near = first.near, result.shallow = first.shallow, result.any_near = first.any_near;
-      if (!first.any_near) return result;
+      SuperellipsoidNewton<float>::Start<N> first;
+      const bool any_near = rough_.template on_ray<N>(y, first);
+      start.near = first.near, start.shallow = first.shallow;
+      if (!any_near) return false;
       rough_.template descend<N>(y, first, 5e-4f, 4);
-      Axes<N>& z = result.foot.z;
+      Axes<N>& z = start.foot.z;
       for (std::size_t k = 0; k < 3; ++k) z[k] = first.foot.z[k].template cast<S>();
       for (Eigen::Index i = 0; i < N; ++i) {
         if (is_finite(S(z[0][i] + z[1][i] + z[2][i]))) continue;
         for (std::size_t k = 0; k < 3; ++k) z[k][i] = x[k][i] / exact_.axes()[static_cast<Eigen::Index>(k)];
       }
-      exact_.template raise<N>(result.foot);
-      return result;
+      exact_.template raise<N>(start.foot);
+      return true;
     }
   }
 

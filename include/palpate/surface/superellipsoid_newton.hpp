@@ -81,7 +81,6 @@ class SuperellipsoidNewton {
     Foot<N> foot;
     LaneMask<N> near;     // inside, or outside by a thousandth
     LaneMask<N> shallow;  // and so far from the centre that there is a direction
-    bool any_near;
   };
   template <int N>
   struct Step {
@@ -105,29 +104,28 @@ class SuperellipsoidNewton {
 
   [[nodiscard]] const Vec3<S>& axes() const noexcept { return axes_; }
 
-  /// Where the ray from the centre through x leaves the body, for lanes that are near.
+  /// Where the ray from the centre through x leaves the body, for lanes that are near; false if none is.
   template <int N>
-  [[nodiscard]] Start<N> on_ray(const Axes<N>& x) const noexcept {
-    Start<N> start;
+  [[nodiscard]] bool on_ray(const Axes<N>& x, Start<N>& start) const noexcept {
     Foot<N>& foot = start.foot;
     foot.z = {x[0] * per_.x(), x[1] * per_.y(), x[2] * per_.z()};
     raise<N>(foot);
     const Lanes<N> F = foot.A * foot.s + foot.w * foot.z[2] * foot.z[2], log_N = F.log() * (S(1) / q_);
-    start.any_near = false;
+    bool any_near = false;
     for (std::size_t i = 0; i < start.near.size(); ++i) {
       const auto k = static_cast<Eigen::Index>(i);
       // A sum of numbers >= 0 is finite if they are. NaN may have become `tiny` above.
       start.near[i] = is_finite(S(x[0][k] + x[1][k] + x[2][k])) && is_finite(S(F[k])) && F[k] < S(1.001L);
       start.shallow[i] = start.near[i] && log_N[k] > S(-2);
-      start.any_near = start.any_near || start.near[i];
+      any_near = any_near || start.near[i];
     }
-    if (!start.any_near) return start;
+    if (!any_near) return false;
     // N is homogeneous: no new powers of each.
     const Lanes<N> log_n = -log_N, n = log_n.exp(), n_p2 = across_.template of<N>(n, log_n),
                    n_q2 = along_.template of<N>(n, log_n);
     for (Lanes<N>& z : foot.z) z *= n;
     foot.u *= n_p2, foot.v *= n_p2, foot.w *= n_q2, foot.s *= n_p2 * n.square(), foot.A *= n_q2 / n_p2;
-    return start;
+    return true;
   }
 
   /// Newton steps until those of every shallow lane are at most `enough`, or `most` of them; the last one.
