@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  How a tree of boxes is built: surface area heuristic over bins. Set-up only.
+/// @file  A node of a tree of boxes, and how the tree is built: surface area heuristic over bins (set-up only).
 
 #include <palpate/core/float_vector.hpp>
 #include <palpate/core/vector.hpp>

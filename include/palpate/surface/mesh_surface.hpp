@@ -102,9 +102,7 @@ class MeshSurface {
   [[nodiscard]] Penetration<S> penetration(const Vec3<S>& x) const noexcept {
     std::uint32_t start;
     if (!may_be_inside(x, start)) return {S(0), Vec3<S>::Zero()};
-    Seen seen;
-    const Nearest near = blend_.search(bvh_, x, start, seen);
-    return below(x, near, seen);
+    return penetration(x, bvh_, start);
   }
 
   /// The same for `lane_count` points; where they are close together, by one walk of the tree.
@@ -125,16 +123,13 @@ class MeshSurface {
     // No point is farther from the mesh than the middle is and its own distance from there.
     const S radius = std::sqrt(blend_.band(std::sqrt(centre.distance2) + spread)) + spread;
     const detail::NearTriangles<S> around(bvh_, middle, radius);
-    if (!around.complete()) return detail::penetrate_one_by_one(*this, x, lane_count, in);
     Vec3<S> before = Vec3<S>::Constant(std::numeric_limits<S>::infinity());
     Penetration<S> one{S(0), Vec3<S>::Zero()};
     for (std::size_t i = 0; i < lane_count; ++i) {
       if (!open[i]) continue;
       const Vec3<S> p(x.x[i], x.y[i], x.z[i]);
       if (p != before) {  // lanes without a point of their own repeat the last one
-        Seen seen;
-        const Nearest near = blend_.search(around, p, centre.triangle, seen);
-        one = below(p, near, seen);
+        one = around.complete() ? penetration(p, around, centre.triangle) : penetration(p);
         before = p;
       }
       in.set(i, one);
@@ -211,8 +206,12 @@ class MeshSurface {
     return !(bounds.lower > S(0));
   }
 
-  /// Penetration of x, whose closest point is `near`.
-  [[nodiscard]] Penetration<S> below(const Vec3<S>& x, const Nearest& near, const Seen& seen) const noexcept {
+  /// Penetration of x by a search in `tree`, a TriangleBvh or NearTriangles, from the triangle `start`.
+  template <class Tree>
+  [[nodiscard]] Penetration<S> penetration(const Vec3<S>& x, const Tree& tree,
+                                           std::uint32_t start) const noexcept {
+    Seen seen;
+    const Nearest near = blend_.search(tree, x, start, seen);
     const S d = -distance(x, near);
     if (!(d > S(0))) return {S(0), Vec3<S>::Zero()};
     return {d, normals_.patches == 1 ? patch_direction(x, near, d, seen) : direction(x, near, d)};

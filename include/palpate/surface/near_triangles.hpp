@@ -22,9 +22,11 @@ class NearTriangles {
         cull, limit,
         [&](std::uint32_t n, std::size_t child, float) {
           if (nodes[n].leaf == 0) return true;
-          if (count_ == capacity) limit = -1.0f;  // ends the walk
-          if (count_ <= capacity) ++count_;
-          if (complete()) copy(nodes[n], child, count_ - 1);
+          if (count_ < capacity)
+            copy(nodes[n], child, count_);
+          else
+            limit = -1.0f;  // ends the walk
+          ++count_;
           return false;
         },
         [](std::uint32_t) {});

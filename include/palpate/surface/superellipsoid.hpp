@@ -108,7 +108,8 @@ class Superellipsoid {
       if (d[i] > (p_.axes[i] + r) * guard) return true;
     const Vec3<S> z = d.cwiseQuotient(p_.axes);
     const S limit = (S(1) + r / min_) * guard;
-    if (z.squaredNorm() <= limit * limit) return false;  // N is at most the length: its exponents are at least 2
+    if (z.squaredNorm() <= limit * limit)
+      return false;  // N is at most the length: its exponents are at least 2
     const S n = norm_.value(z);
     return is_finite(n) && n > limit;
   }
@@ -229,9 +230,9 @@ class Superellipsoid {
       done[k] = !near.near[k] || (near.settled[k] && below < reach_);
       const bool inside = near.settled[k] && done[k] && below > S(0);
       depth[k] = inside ? below : S(0);
-      nx[k] = inside ? (x[k] < p_.centre.x() ? -near.normal[0][i] : near.normal[0][i]) : S(0);
-      ny[k] = inside ? (y[k] < p_.centre.y() ? -near.normal[1][i] : near.normal[1][i]) : S(0);
-      nz[k] = inside ? (z[k] < p_.centre.z() ? -near.normal[2][i] : near.normal[2][i]) : S(0);
+      nx[k] = inside ? with_sign(x[k] - p_.centre.x(), near.normal[0][i]) : S(0);
+      ny[k] = inside ? with_sign(y[k] - p_.centre.y(), near.normal[1][i]) : S(0);
+      nz[k] = inside ? with_sign(z[k] - p_.centre.z(), near.normal[2][i]) : S(0);
     }
     for (std::size_t k = 0; k < done.size(); ++k) {
       if (done[k]) continue;
@@ -243,10 +244,10 @@ class Superellipsoid {
     }
   }
 
-  // v with the signs of r.
+  // v with the sign of r.
+  [[nodiscard]] static S with_sign(S r, S v) noexcept { return r < S(0) ? -v : v; }
   [[nodiscard]] static Vec3<S> signs_of(const Vec3<S>& r, const Vec3<S>& v) noexcept {
-    return Vec3<S>(r.x() < S(0) ? -v.x() : v.x(), r.y() < S(0) ? -v.y() : v.y(),
-                   r.z() < S(0) ? -v.z() : v.z());
+    return Vec3<S>(with_sign(r.x(), v.x()), with_sign(r.y(), v.y()), with_sign(r.z(), v.z()));
   }
   [[nodiscard]] Vec3<S> on_surface(const Vec3<S>& z) const noexcept { return z / norm_.value(z.cwiseAbs()); }
 

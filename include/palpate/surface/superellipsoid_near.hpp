@@ -3,10 +3,12 @@
 
 /// @file  Depth of points inside a superellipsoid near its surface, many at once.
 
+#include <palpate/core/absent.hpp>
 #include <palpate/surface/superellipsoid_newton.hpp>
 
 #include <array>
 #include <limits>
+#include <type_traits>
 
 namespace palpate::detail {
 
@@ -29,8 +31,7 @@ class SuperellipsoidNear {
   };
 
   SuperellipsoidNear(const Vec3<S>& axes, S p, S q) noexcept
-      : exact_(axes, p, q),
-        rough_(axes.template cast<float>(), static_cast<float>(p), static_cast<float>(q)) {}
+      : exact_(axes, p, q), rough_(rough(axes, p, q)) {}
 
   template <int N>
   [[nodiscard]] Result<N> solve(const Axes<N>& x) const noexcept {
@@ -61,6 +62,15 @@ class SuperellipsoidNear {
   }
 
  private:
+  // Of the first steps in float; nothing where all are.
+  using Rough = std::conditional_t<std::same_as<S, float>, Absent<0>, SuperellipsoidNewton<float>>;
+  [[nodiscard]] static Rough rough(const Vec3<S>& axes, S p, S q) noexcept {
+    if constexpr (std::same_as<S, float>)
+      return {};
+    else
+      return Rough(axes.template cast<float>(), static_cast<float>(p), static_cast<float>(q));
+  }
+
   template <int N>
   using Start = typename SuperellipsoidNewton<S>::template Start<N>;
 
@@ -89,7 +99,7 @@ class SuperellipsoidNear {
   }
 
   SuperellipsoidNewton<S> exact_;
-  SuperellipsoidNewton<float> rough_;
+  PALPATE_NO_UNIQUE_ADDRESS Rough rough_;
 };
 
 }  // namespace palpate::detail

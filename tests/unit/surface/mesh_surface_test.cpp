@@ -240,7 +240,8 @@ TEST_CASE_TEMPLATE("mesh surface: many points at once are as one by one, close t
         const Penetration<S> one = body.penetration(Vec3<S>(x.x[i], x.y[i], x.z[i]));
         CHECK(in.depth[i] == one.depth);  // of the same triangle, or of its neighbour at the same place
         const Vec3<S> g(in.gradient_x[i], in.gradient_y[i], in.gradient_z[i]);
-        CHECK_ABSOLUTE((g - one.gradient).norm(), 0, test::ulps<S>(64));  // added up in another order
+        CHECK_ABSOLUTE((g - one.gradient).norm(), 0,
+                       test::ulps<S>(64));  // of up to 64 triangles, in another order
         touching += one.depth > S(0);
       }
     }
