@@ -8,16 +8,20 @@
 
 #include <palpate/config.hpp>
 
-#if defined(__SSE__)
+#if defined(__AVX__)
+#include <immintrin.h>
+#elif defined(__SSE__)
 #include <xmmintrin.h>
 #else
 #include <Eigen/Core>
 #endif
 
 #include <bit>
+#include <concepts>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 namespace palpate::detail {
 
@@ -87,7 +91,11 @@ PALPATE_INLINE void store_apart(unsigned char* to0, unsigned char* to1, unsigned
 }
 
 /// x in every entry.
-[[nodiscard]] PALPATE_INLINE Float4 four(float x) noexcept { return Float4{x, x, x, x}; }
+template <class V>
+[[nodiscard]] PALPATE_INLINE V splat(float x) noexcept {
+  return x - V{};
+}
+[[nodiscard]] PALPATE_INLINE Float4 four(float x) noexcept { return splat<Float4>(x); }
 /// Entry by entry; b where one is not a number. Written as instructions: gcc turns a comparison with 0 into masks.
 [[nodiscard]] PALPATE_INLINE Float4 larger(Float4 a, Float4 b) noexcept {
 #if defined(__SSE__)
@@ -103,12 +111,6 @@ PALPATE_INLINE void store_apart(unsigned char* to0, unsigned char* to1, unsigned
   return a < b ? a : b;
 #endif
 }
-[[nodiscard]] PALPATE_INLINE Float4 between(Float4 a, float least, float most) noexcept {
-  return smaller(larger(a, four(least)), four(most));
-}
-[[nodiscard]] PALPATE_INLINE Float4 magnitude(Float4 a) noexcept {
-  return std::bit_cast<Float4>(std::bit_cast<Bits4>(a) & 0x7fffffffu);
-}
 [[nodiscard]] PALPATE_INLINE Float4 root(Float4 a) noexcept {
 #if defined(__SSE__)
   return _mm_sqrt_ps(a);
@@ -119,21 +121,46 @@ PALPATE_INLINE void store_apart(unsigned char* to0, unsigned char* to1, unsigned
   return load_vector<Float4>(x.data());
 #endif
 }
-[[nodiscard]] PALPATE_INLINE float least_of(Float4 a) noexcept {
-  const Float4 two = smaller(a, __builtin_shufflevector(a, a, 2, 3, 0, 1));
-  return two[0] < two[1] ? two[0] : two[1];
+#if defined(__AVX__)
+[[nodiscard]] PALPATE_INLINE FloatRegister larger(FloatRegister a, FloatRegister b) noexcept {
+  return _mm256_max_ps(a, b);
 }
-
+[[nodiscard]] PALPATE_INLINE FloatRegister smaller(FloatRegister a, FloatRegister b) noexcept {
+  return _mm256_min_ps(a, b);
+}
+[[nodiscard]] PALPATE_INLINE FloatRegister root(FloatRegister a) noexcept { return _mm256_sqrt_ps(a); }
+#endif
+/// `V`: Float4 or FloatRegister.
+template <class V>
+[[nodiscard]] PALPATE_INLINE V between(const V& a, float least, float most) noexcept {
+  return smaller(larger(a, splat<V>(least)), splat<V>(most));
+}
+template <class V>
+  requires(!std::floating_point<V>)
+[[nodiscard]] PALPATE_INLINE V magnitude(const V& a) noexcept {
+  using Bits = std::conditional_t<sizeof(V) == sizeof(Float4), Bits4, BitsRegister>;
+  return std::bit_cast<V>(std::bit_cast<Bits>(a) & 0x7fffffffu);
+}
 /// Entries from, from + 1, .. of a register.
 template <class V>
 [[nodiscard]] PALPATE_INLINE Float4 four_of(const V& x, std::size_t from) noexcept {
   return load_vector<Float4>(reinterpret_cast<const float*>(&x) + from);
 }
+[[nodiscard]] PALPATE_INLINE float least_of(Float4 a) noexcept {
+  const Float4 two = smaller(a, __builtin_shufflevector(a, a, 2, 3, 0, 1));
+  return two[0] < two[1] ? two[0] : two[1];
+}
+
 /// Lowers `least`, entry by entry, to those of x, four by four.
 template <class V>
 PALPATE_INLINE void take_least(Float4& least, const V& x) noexcept {
   for (std::size_t from = 0; from < sizeof(V) / sizeof(float); from += 4)
     least = smaller(four_of(x, from), least);
 }
+#if defined(__AVX__)
+[[nodiscard]] PALPATE_INLINE float least_of(FloatRegister a) noexcept {
+  return least_of(smaller(four_of(a, 0), four_of(a, 4)));
+}
+#endif
 
 }  // namespace palpate::detail

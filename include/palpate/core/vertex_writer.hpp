@@ -26,6 +26,11 @@ class VertexWriter {
     std::memcpy(at + sizeof(T), &y, sizeof(T));
     std::memcpy(at + 2 * sizeof(T), &z, sizeof(T));
   }
+  /// To vertices number first, first + 1, .. first + 3.
+  PALPATE_INLINE void put_row(std::size_t first, Float4 x, Float4 y, Float4 z) const noexcept {
+    if (is_packed()) return store_interleaved(base_ + stride_ * first, x, y, z);
+    put_apart([first](std::size_t k) { return first + k; }, x, y, z);
+  }
   /// To vertices number vertex(0) .. vertex(3).
   template <class Vertex>
   PALPATE_INLINE void put_four(const Vertex& vertex, Float4 x, Float4 y, Float4 z) const noexcept {
@@ -62,13 +67,15 @@ class VertexWriter {
   }
 
  private:
-  // Do four vertices follow each other in a packed buffer of floats? Then whole registers are written.
+  // Floats without a gap: whole registers may be written.
+  [[nodiscard]] PALPATE_INLINE bool is_packed() const noexcept {
+    return sizeof(T) == sizeof(float) && stride_ == 3 * sizeof(float);
+  }
+  // Do four vertices follow each other in a packed buffer?
   template <class Vertex>
   [[nodiscard]] PALPATE_INLINE bool in_a_row(const Vertex& vertex) const noexcept {
-    if constexpr (sizeof(T) != sizeof(float)) return false;
     const std::uint32_t first = vertex(0);
-    return stride_ == 3 * sizeof(float) && vertex(1) == first + 1 && vertex(2) == first + 2 &&
-           vertex(3) == first + 3;
+    return is_packed() && vertex(1) == first + 1 && vertex(2) == first + 2 && vertex(3) == first + 3;
   }
 
   unsigned char* base_;

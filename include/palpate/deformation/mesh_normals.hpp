@@ -3,9 +3,9 @@
 
 /// @file  Normals of a mesh all of whose vertices move, into the caller's buffer.
 
+#include <palpate/core/vertex_writer.hpp>
 #include <palpate/deformation/concept.hpp>
 #include <palpate/deformation/vertex_normals.hpp>
-#include <palpate/core/vertex_writer.hpp>
 
 namespace palpate {
 
@@ -38,9 +38,15 @@ class MeshNormals {
     const auto to = writer(out);
     for (std::size_t v = 0; v < rest_.size(); ++v) to.put(v, T(rest_[v].x), T(rest_[v].y), T(rest_[v].z));
   }
-  /// After `VertexPlaces::set_four`.
-  void complete() noexcept {
-    if (normals_.has_rows()) places_.complete();
+  /// After `VertexPlaces::set_four`, before `write`: the places into the caller's buffer.
+  template <Real T>
+  void write_places(const VertexBuffer<T>& out) noexcept {
+    const detail::VertexWriter<T> to(out.positions, out.position_stride);
+    places_.complete(normals_.has_rows(),
+                     [&to, size = rest_.size()](std::size_t v, const auto& x, const auto& y, const auto& z) {
+                       if (v + 4 <= size) return to.put_row(v, x, y, z);
+                       for (std::size_t k = 0; v + k < size; ++k) to.put(v + k, T(x[k]), T(y[k]), T(z[k]));
+                     });
   }
 
  private:

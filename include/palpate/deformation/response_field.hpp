@@ -79,7 +79,8 @@ class ResponseFieldDeformation {
     }
     if (out.positions == nullptr || !is_new(pressed, count)) return moved;
     tick_.solve(pressed.data(), count, forces_.data());
-    Put<T> put(display_, out, p_.normals ? &normals_.places() : nullptr);
+    const bool with_normals = p_.normals && out.normals != nullptr;
+    Put<T> put(display_, out, with_normals ? &normals_.places() : nullptr);
     tick_.each(display_, put);
     moved.vertices = display_.size();
     if (moved.vertices > 0) {
@@ -89,8 +90,8 @@ class ResponseFieldDeformation {
       moved.upper =
           Vec3<float>(-least_of(-high.x), -least_of(-high.y), -least_of(-high.z)).template cast<S>();
     }
-    if (p_.normals && out.normals != nullptr) {
-      normals_.complete();
+    if (with_normals) {
+      normals_.write_places(out);
       normals_.write(out);
     }
     return moved;
@@ -104,14 +105,15 @@ class ResponseFieldDeformation {
  private:
   static constexpr const char* name = "ResponseFieldDeformation";
 
-  // Puts lanes of vertices where they belong, and finds the box around them.
+  // Puts lanes of vertices where they belong, and finds the box around them. With normals they go to the places that those are made
+  // from, and from there row by row to the caller.
   template <Real T>
   struct Put {
     using Lane = detail::Lane;
     const float *at_x, *at_y, *at_z;  // at rest, by slot
     const std::uint32_t* vertex;
     detail::VertexWriter<T> to;
-    VertexPlaces* place;  // null: not wanted
+    VertexPlaces* place;  // null: no normals
     detail::Lane3 low, high;
 
     Put(const ResponseDisplay& display, const VertexBuffer<T>& out, VertexPlaces* places) noexcept
@@ -131,8 +133,10 @@ class ResponseFieldDeformation {
                              lane_at(at_z + slot) + u.z};
       low = {smaller(low.x, at.x), smaller(low.y, at.y), smaller(low.z, at.z)};
       high = {larger(high.x, at.x), larger(high.y, at.y), larger(high.z, at.z)};
-      to.put_apart([this, slot](std::size_t k) { return vertex[slot + k]; }, at.x, at.y, at.z);
-      if (place != nullptr) place->set_four(vertex + slot, at.x, at.y, at.z);
+      if (place != nullptr)
+        place->set_four(vertex + slot, at.x, at.y, at.z);
+      else
+        to.put_apart([this, slot](std::size_t k) { return vertex[slot + k]; }, at.x, at.y, at.z);
     }
   };
 

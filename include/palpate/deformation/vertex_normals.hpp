@@ -49,21 +49,27 @@ class VertexPlaces {
     detail::store_vector(&axis_[2][v], c);
     pack(a, b, c, [v](std::size_t k) { return v + k; });
   }
-  /// Four anywhere, packed; `complete()` for the coordinates when all are there.
+  /// Four anywhere, packed; `complete` when all are there.
   PALPATE_INLINE void set_four(const std::uint32_t* v, detail::Float4 x, detail::Float4 y,
                                detail::Float4 z) noexcept {
     pack(x, y, z, [v](std::size_t k) { return v[k]; });
   }
-  void complete() noexcept {
+  /// emit(v, x, y, z) with each four places in a row, v a multiple of 4, the last perhaps past the last vertex. What has only been
+  /// packed gets its coordinates, if `axes`.
+  template <class Emit>
+  PALPATE_INLINE void complete(bool axes, const Emit& emit) noexcept {
     for (std::size_t v = 0; v < packed_.size(); v += 4) {
       detail::Float4 a = detail::load_vector<detail::Float4>(&packed_[v].x),
                      b = detail::load_vector<detail::Float4>(&packed_[v + 1].x),
                      c = detail::load_vector<detail::Float4>(&packed_[v + 2].x),
                      d = detail::load_vector<detail::Float4>(&packed_[v + 3].x);
       detail::transpose(a, b, c, d);
-      detail::store_vector(&axis_[0][v], a);
-      detail::store_vector(&axis_[1][v], b);
-      detail::store_vector(&axis_[2][v], c);
+      if (axes) {
+        detail::store_vector(&axis_[0][v], a);
+        detail::store_vector(&axis_[1][v], b);
+        detail::store_vector(&axis_[2][v], c);
+      }
+      emit(v, a, b, c);
     }
   }
 

@@ -50,103 +50,195 @@ class BendTable {
   [[nodiscard]] std::span<const Weight> operator[](std::size_t edge) const noexcept {
     return {weights_.data() + begin_[edge], begin_[edge + 1] - begin_[edge]};
   }
-  [[nodiscard]] std::size_t size() const noexcept { return middle_.size(); }
-  [[nodiscard]] const Vec3<float>& middle(std::size_t edge) const noexcept { return middle_[edge]; }
+  [[nodiscard]] std::size_t size() const noexcept { return begin_.size() - 1; }
+  [[nodiscard]] const std::array<std::uint32_t, 2>& ends(std::size_t edge) const noexcept {
+    return ends_[edge];
+  }
+  /// Middles of all edges, by coordinate, whole lanes; out of reach where an edge never bends.
+  [[nodiscard]] const std::array<std::vector<float>, 3>& middles() const noexcept { return middle_; }
   [[nodiscard]] const std::vector<Edges>& of_triangle() const noexcept { return of_triangle_; }
   /// First weight of each edge, and one more.
   [[nodiscard]] const std::vector<std::uint32_t>& begin() const noexcept { return begin_; }
   [[nodiscard]] const std::vector<Weight>& weights() const noexcept { return weights_; }
   [[nodiscard]] std::size_t memory() const noexcept {
-    return of_triangle_.size() * sizeof(Edges) + middle_.size() * sizeof(middle_[0]) + begin_.size() * 4 +
+    return of_triangle_.size() * sizeof(Edges) + 3 * middle_[0].size() * sizeof(float) + begin_.size() * 4 +
            weights_.size() * sizeof(Weight);
   }
 
  private:
   void find_middles(const SolveMesh& mesh) {
-    middle_.resize(begin_.size() - 1);
+    ends_.resize(size());
     for (std::size_t t = 0; t < of_triangle_.size(); ++t)
       for (std::size_t c = 0; c < 3; ++c)
-        middle_[of_triangle_[t][c]] =
-            (0.5 * (mesh.vertices[mesh.triangles[t][c]] + mesh.vertices[mesh.triangles[t][(c + 1) % 3]]))
-                .cast<float>();
+        ends_[of_triangle_[t][c]] = {mesh.triangles[t][c], mesh.triangles[t][(c + 1) % 3]};
+    constexpr std::size_t lanes = detail::lane_size;
+    for (auto& list : middle_) list.assign((size() + lanes - 1) / lanes * lanes, 1e9f);
+    for (std::size_t e = 0; e < size(); ++e) {
+      if ((*this)[e].empty()) continue;
+      Vec3<double> x = 0.5 * (mesh.vertices[ends_[e][0]] + mesh.vertices[ends_[e][1]]);
+      for (const Weight& w : (*this)[e]) x += double(w.weight) * mesh.vertices[w.vertex];
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        middle_[axis][e] = static_cast<float>(x[static_cast<Eigen::Index>(axis)]);
+    }
   }
 
   std::vector<Edges> of_triangle_;
-  std::vector<Vec3<float>> middle_;
+  std::vector<std::array<std::uint32_t, 2>> ends_;
+  std::array<std::vector<float>, 3> middle_;
   std::vector<std::uint32_t> begin_{0};
   std::vector<Weight> weights_;
 };
 
 namespace detail {
 
-/// The bends of one tick's field within `reach` of the contacts' patches, from three quarters of it on fading; found for the
-/// triangles that are asked for, each edge once.
+/// The bends of one tick's field within `reach` of the contacts' patches, from three quarters of it on fading: of the near fields,
+/// known at the edges' middles, and of the rest.
+template <std::size_t Capacity>
 class BentEdges {
  public:
   /// Four times the bends of a triangle's edges.
   struct OfTriangle {
     Lane edge[3];
-    [[nodiscard]] PALPATE_INLINE Lane3 operator()(const Lane& b1, const Lane& b2) const noexcept {
-      const Lane b0 = 1.f - b1 - b2, q0 = b0 * b1, q1 = b1 * b2, q2 = b2 * b0;
+    template <class V>
+    [[nodiscard]] PALPATE_INLINE Axes<V> operator()(const V& b1, const V& b2) const noexcept {
+      const V b0 = 1.f - b1 - b2, q0 = b0 * b1, q1 = b1 * b2, q2 = b2 * b0;
       return {q0 * edge[0][0] + q1 * edge[1][0] + q2 * edge[2][0],
               q0 * edge[0][1] + q1 * edge[1][1] + q2 * edge[2][1],
               q0 * edge[0][2] + q1 * edge[1][2] + q2 * edge[2][2]};
     }
   };
 
-  BentEdges(const BendTable& table, std::size_t stride)
-      : table_(&table), field_(4 * stride), edge_(table.size()) {}
+  BentEdges(const BendTable& table, std::size_t stride) : table_(&table), rest_(4 * stride), all_(table) {
+    for (std::size_t c = 0; c < Capacity; ++c) own_.emplace_back(table);
+  }
 
-  /// A new field at the solve mesh's vertices, by coordinate, `stride` numbers each.
-  void read(const float* field, std::size_t stride) noexcept {
-    ++now_;
-    float* out = field_.data();
-    for (std::size_t v = 0; v < stride; ++v, out += 4) {
-      out[0] = field[v];
-      out[1] = field[stride + v];
-      out[2] = field[2 * stride + v];
-      out[3] = 0;
+  /// `total`: the field at the solve mesh's vertices, four numbers each; `own`: of it the near fields of `count` contacts, one after the
+  /// other, by coordinate, `stride` numbers each.
+  void read(const float* total, const float* own, std::size_t stride,
+            const std::array<ContactNear, Capacity>& near, std::size_t count, float reach) noexcept {
+    find_rest(total, own, stride, count);
+    find_shares(near, count, reach);
+    all_.list();
+    for (const std::uint32_t edge : all_.bent) store_vector(&all_.bend[4 * edge], bend(edge));
+    for (std::size_t c = 0; c < count; ++c) {
+      own_[c].list();
+      bend_near(near[c], own + 3 * stride * c, stride, own_[c]);
     }
   }
-  /// False where none of a triangle's edges is near one of `count` contacts.
-  template <class Contacts>
-  [[nodiscard]] bool find(std::size_t triangle, const Contacts& near, std::size_t count, float reach,
-                          OfTriangle& out) noexcept {
-    bool any = false;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::uint32_t e = table_->of_triangle()[triangle][c];
-      Edge& edge = edge_[e];
-      if (edge.found != now_) {
-        float without = 1;
-        for (std::size_t i = 0; i < count; ++i) {
-          const float inside = reach + near[i].a - (table_->middle(e) - near[i].place).norm();
-          without *= 1 - std::clamp(inside * (4 / reach), 0.f, 1.f);
-        }
-        edge = {now_, without < 1, without < 1 ? bend(e, 1 - without) : Lane{}};
-      }
-      any = any || edge.near;
-      out.edge[c] = edge.bend;
-    }
-    return any;
+  /// False where none of a triangle's edges is near a contact.
+  [[nodiscard]] PALPATE_INLINE bool find(std::size_t triangle, OfTriangle& out) const noexcept {
+    return all_.find(table_->of_triangle()[triangle], out);
+  }
+  /// The same of contact c's near field alone.
+  [[nodiscard]] PALPATE_INLINE bool find_near(std::size_t c, std::size_t triangle,
+                                              OfTriangle& out) const noexcept {
+    return own_[c].find(table_->of_triangle()[triangle], out);
   }
 
  private:
-  struct Edge {
-    std::uint64_t found = 0;
-    bool near = false;
-    Lane bend;
+  using Wide = FloatRegister;
+  struct Bends {
+    std::vector<float> share;         // by edge, whole lanes: 1 near the contact, 0 beyond its reach
+    std::vector<float> bend;          // by edge, four numbers each; 0 without a share
+    std::vector<std::uint32_t> bent;  // edges with a share; never more than reserved
+
+    explicit Bends(const BendTable& table) : share(table.middles()[0].size()), bend(4 * table.size()) {
+      bent.reserve(table.size());
+    }
+    // After the shares: the edges, none of which has a bend yet.
+    void list() noexcept {
+      for (const std::uint32_t edge : bent) store_vector(&bend[4 * edge], Lane{});
+      bent.clear();
+      for (std::uint32_t e = 0; e < share.size(); e += lane_size) {
+        if (!(-least_of(-lane_at(&share[e])) > 0)) continue;
+        for (std::uint32_t k = e; k < e + lane_size; ++k)
+          if (share[k] > 0) bent.push_back(k);
+      }
+    }
+    [[nodiscard]] PALPATE_INLINE bool find(const BendTable::Edges& edges, OfTriangle& out) const noexcept {
+      const auto& [a, b, c] = edges;
+      if (!(share[a] + share[b] + share[c] > 0)) return false;
+      out = {{lane_at(&bend[4 * a]), lane_at(&bend[4 * b]), lane_at(&bend[4 * c])}};
+      return true;
+    }
   };
-  [[nodiscard]] Lane bend(std::uint32_t edge, float share) const noexcept {
-    Lane sum{};
-    for (const BendTable::Weight& w : (*table_)[edge])
-      sum += w.weight * lane_at(&field_[4 * w.vertex]);
-    return 4 * share * sum;
+
+  void find_rest(const float* total, const float* own, std::size_t stride, std::size_t count) noexcept {
+    for (std::size_t v = 0; v < stride; v += lane_size) {
+      Lane x{}, y{}, z{}, none{};
+      for (std::size_t c = 0; c < count; ++c) {
+        const float* const near = own + 3 * stride * c + v;
+        x += lane_at(near), y += lane_at(near + stride), z += lane_at(near + 2 * stride);
+      }
+      transpose(x, y, z, none);
+      const auto put = [to = &rest_[4 * v], from = total + 4 * v](std::size_t k, const Lane& u) {
+        store_vector(to + 4 * k, Lane(lane_at(from + 4 * k) - u));
+      };
+      put(0, x), put(1, y), put(2, z), put(3, none);
+    }
+  }
+  void find_shares(const std::array<ContactNear, Capacity>& near, std::size_t count, float reach) noexcept {
+    const auto& [x, y, z] = table_->middles();
+    for (std::size_t e = 0; e < x.size(); e += lane_size) {
+      const Lane ex = lane_at(&x[e]), ey = lane_at(&y[e]), ez = lane_at(&z[e]);
+      Lane without = four(1);
+      for (std::size_t c = 0; c < count; ++c) {
+        const Vec3<float>& place = near[c].place;
+        const Lane rx = ex - place.x(), ry = ey - place.y(), rz = ez - place.z();
+        const Lane inside = reach + near[c].a - root(rx * rx + ry * ry + rz * rz);
+        const Lane share = between(Lane(inside * (4 / reach)), 0, 1);
+        store_vector(&own_[c].share[e], share);
+        without *= 1 - share;
+      }
+      store_vector(&all_.share[e], Lane(1 - without));
+    }
+  }
+  void bend_near(const ContactNear& near, const float* own, std::size_t stride, Bends& out) noexcept {
+    constexpr std::size_t wide = sizeof(Wide) / sizeof(float);
+    const auto& middle = table_->middles();
+    for (std::size_t i = 0; i < out.bent.size(); i += wide) {
+      std::array<std::array<float, wide>, 3> at, mean;
+      for (std::size_t k = 0; k < wide; ++k) {
+        const std::uint32_t edge = out.bent[(std::min)(i + k, out.bent.size() - 1)];
+        const auto [p, q] = table_->ends(edge);
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          at[axis][k] = middle[axis][edge];
+          mean[axis][k] = 0.5f * (own[axis * stride + p] + own[axis * stride + q]);
+        }
+      }
+      const auto from = [](const auto& list) { return load_vector<Wide>(list.data()); };
+      const Axes<Wide> u = near(Axes<Wide>{from(at[0]), from(at[1]), from(at[2])});
+      const Wide x = u.x - from(mean[0]), y = u.y - from(mean[1]), z = u.z - from(mean[2]);
+      for (std::size_t k = 0; k < wide && i + k < out.bent.size(); ++k) {
+        const std::uint32_t edge = out.bent[i + k];
+        const Lane bend = 4 * out.share[edge] * Lane{x[k], y[k], z[k], 0};
+        store_vector(&out.bend[4 * edge], bend);
+        store_vector(&all_.bend[4 * edge], Lane(lane_at(&all_.bend[4 * edge]) + bend));
+      }
+    }
+  }
+  // Four sums: one alone would wait for each of some 25 additions.
+  [[nodiscard]] Lane bend(std::uint32_t edge) const noexcept {
+    const auto weights = (*table_)[edge];
+    const auto part = [&](std::size_t i) {
+      return weights[i].weight * lane_at(&rest_[4 * weights[i].vertex]);
+    };
+    Lane sum{}, sum1{}, sum2{}, sum3{};
+    std::size_t i = 0;
+    for (; i + 4 <= weights.size(); i += 4) {
+      sum += part(i);
+      sum1 += part(i + 1);
+      sum2 += part(i + 2);
+      sum3 += part(i + 3);
+    }
+    for (; i < weights.size(); ++i) sum += part(i);
+    return 4 * all_.share[edge] * ((sum + sum1) + (sum2 + sum3));
   }
 
   const BendTable* table_;
-  std::vector<float> field_;  // by vertex, four numbers each
-  std::vector<Edge> edge_;
-  std::uint64_t now_ = 0;
+  std::vector<float> rest_;  // what the near fields leave, by vertex, four numbers each
+  Bends all_;
+  std::vector<Bends> own_;  // near fields, by contact
 };
 
 }  // namespace detail

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  The near field of one solved contact, four places at a time. Per tick.
+/// @file  The near field of one solved contact, a register of places at a time. Per tick.
 ///
 /// Places near the contact lie on a bent surface, the disc in a plane. The disc is taken at the depth z of its own edge
 /// below the tangent plane: for a quadric z (a/r)^2, so depth = z (1 - (a/r)^2), which vanishes at the edge. The edge is at
@@ -15,16 +15,18 @@
 
 namespace palpate::detail {
 
-/// Places or displacements, one lane per axis.
-struct Lane3 {
-  Lane x, y, z;
-  PALPATE_INLINE Lane3& operator+=(const Lane3& u) noexcept {
+/// Places or displacements, one register per axis. `V`: Float4 or FloatRegister.
+template <class V>
+struct Axes {
+  V x, y, z;
+  PALPATE_INLINE Axes& operator+=(const Axes& u) noexcept {
     x += u.x;
     y += u.y;
     z += u.z;
     return *this;
   }
 };
+using Lane3 = Axes<Lane>;
 
 struct ContactNear {
   Vec3<float> place, m;        ///< m: unit normal into the body
@@ -53,32 +55,32 @@ struct ContactNear {
     push *= share;
     for (float* part : {&normal, &dipole, &radial, &sink}) *part *= share;
   }
-  [[nodiscard]] PALPATE_INLINE Lane3 operator()(const Lane3& at) const noexcept {
-    const Lane rx = at.x - place.x(), ry = at.y - place.y(), rz = at.z - place.z();
-    const Lane z = rx * m.x() + ry * m.y() + rz * m.z();
-    const Lane px = rx - z * m.x(), py = ry - z * m.y(), pz = rz - z * m.z();
-    const Lane r2 = larger(rx * rx + ry * ry + rz * rz, four(1e-12f * a * a)),
-               p2 = px * px + py * py + pz * pz;
-    const Lane near2 = smaller(a * a / r2, four(1.f));
-    const Lane depth = larger(z - smaller(z * near2, four(sag)), Lane{});
-    const Disc<Lane, float> disc(p2, depth, a);
+  template <class V>
+  [[nodiscard]] PALPATE_INLINE Axes<V> operator()(const Axes<V>& at) const noexcept {
+    const V rx = at.x - place.x(), ry = at.y - place.y(), rz = at.z - place.z();
+    const V z = rx * m.x() + ry * m.y() + rz * m.z();
+    const V px = rx - z * m.x(), py = ry - z * m.y(), pz = rz - z * m.z();
+    const V r2 = larger(rx * rx + ry * ry + rz * rz, splat<V>(1e-12f * a * a)),
+            p2 = px * px + py * py + pz * pz;
+    const V near2 = smaller(a * a / r2, splat<V>(1.f));
+    const V depth = larger(z - smaller(z * near2, splat<V>(sag)), V{});
+    const Disc<V, float> disc(p2, depth, a);
     if (ball) {
       const auto u = disc.hertz(normal, nu);
       return {u.in_plane * px + u.normal * m.x(), u.in_plane * py + u.normal * m.y(),
               u.in_plane * pz + u.normal * m.z()};
     }
     const auto u = disc.flat(normal, px * along.x() + py * along.y() + pz * along.z(), nu);
-    Lane in_plane = u.in_plane, down = u.normal, turned_back{};
-    Lane3 out{u.along * along.x(), u.along * along.y(), u.along * along.z()};
+    V in_plane = u.in_plane, down = u.normal, turned_back{};
+    Axes<V> out{u.along * along.x(), u.along * along.y(), u.along * along.z()};
     if (second) {
       const auto d = disc.double_force(nu);
-      const Lane inverse = root(near2),
-                 beyond = larger(1.f - near2, Lane{});  // 1 / s, at most 1; 1 - 1 / s^2
+      const V inverse = root(near2), beyond = larger(1.f - near2, V{});  // 1 / s, at most 1; 1 - 1 / s^2
       // q_r / (a s): asin(1/s) / (s sqrt(s^2 - 1 + e^2)), with the roots of 1/s^2 instead.
-      const Lane q_r = (radial / a) * arc_sine(inverse) * near2 * inverse /
-                       root(larger(beyond + rim2 * near2, four(1e-12f)));
+      const V q_r = (radial / a) * arc_sine(inverse) * near2 * inverse /
+                    root(larger(beyond + rim2 * near2, splat<V>(1e-12f)));
       in_plane += dipole * d.in_plane + q_r;
-      const Lane back = near2 * near2 * near2 * near2;
+      const V back = near2 * near2 * near2 * near2;
       turned_back = back * inverse;
       down += dipole * d.normal + sink * near2 * near2 * inverse * root(beyond);
       out.x -= back * push.x();
@@ -86,7 +88,7 @@ struct ContactNear {
       out.z -= back * push.z();
     }
     if (tilted) {
-      const Lane tp = px * tilt.x() + py * tilt.y() + pz * tilt.z();
+      const V tp = px * tilt.x() + py * tilt.y() + pz * tilt.z();
       const auto t = disc.tilt(tp, nu);
       in_plane += t.in_plane;
       // The patch itself does not turn: what second order does at its edge is taken back, as the push is.
@@ -96,9 +98,9 @@ struct ContactNear {
       out.z += t.along * tilt.z();
     }
     if (sheared) {
-      const Lane sx = shear(0, 0) * px + shear(0, 1) * py + shear(0, 2) * pz,
-                 sy = shear(1, 0) * px + shear(1, 1) * py + shear(1, 2) * pz,
-                 sz = shear(2, 0) * px + shear(2, 1) * py + shear(2, 2) * pz;
+      const V sx = shear(0, 0) * px + shear(0, 1) * py + shear(0, 2) * pz,
+              sy = shear(1, 0) * px + shear(1, 1) * py + shear(1, 2) * pz,
+              sz = shear(2, 0) * px + shear(2, 1) * py + shear(2, 2) * pz;
       const auto s = disc.shear(px * sx + py * sy + pz * sz, nu);
       in_plane += s.in_plane;
       down += s.normal;

@@ -80,7 +80,7 @@ template <class T>
 }
 
 namespace detail {
-/// Four places at a time, for the tick's long loops.
+/// Four places at a time, for the tick's loops; the long ones take as many as a register holds.
 using Lane = Float4;
 inline constexpr std::uint32_t lane_size = sizeof(Lane) / sizeof(float);
 [[nodiscard]] PALPATE_INLINE Lane lane_at(const float* from) noexcept { return load_vector<Lane>(from); }
@@ -101,18 +101,20 @@ template <std::floating_point S>
 [[nodiscard]] PALPATE_INLINE double first_quadrant_angle(double y, double x) noexcept {
   return std::atan2(y, x);
 }
-[[nodiscard]] PALPATE_INLINE Lane first_quadrant_angle(Lane y, Lane x) noexcept {
-  const Lane t = smaller(x, y) / larger(x, y), t2 = t * t;
-  const Lane p =
-      t *
-      (0.99997726f + t2 * (-0.33262347f +
-                           t2 * (0.19354346f + t2 * (-0.11643287f + t2 * (0.05265332f - t2 * 0.01172120f)))));
+template <class V>
+  requires(!std::floating_point<V>)
+[[nodiscard]] PALPATE_INLINE V first_quadrant_angle(const V& y, const V& x) noexcept {
+  const V t = smaller(x, y) / larger(x, y), t2 = t * t;
+  const V p = t * (0.99997726f +
+                   t2 * (-0.33262347f +
+                         t2 * (0.19354346f + t2 * (-0.11643287f + t2 * (0.05265332f - t2 * 0.01172120f)))));
   return y > x ? 1.57079633f - p : p;
 }
 /// asin(x) for 0 <= x <= 1, to 7e-5. Source: [abramowitz1964], 4.4.45.
-[[nodiscard]] PALPATE_INLINE Lane arc_sine(const Lane& x) noexcept {
+template <class V>
+[[nodiscard]] PALPATE_INLINE V arc_sine(const V& x) noexcept {
   return 1.57079633f -
-         root(larger(1.f - x, Lane{})) * (1.5707288f + x * (-0.2121144f + x * (0.0742610f - 0.0187293f * x)));
+         root(larger(1.f - x, V{})) * (1.5707288f + x * (-0.2121144f + x * (0.0742610f - 0.0187293f * x)));
 }
 }  // namespace detail
 

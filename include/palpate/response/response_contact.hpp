@@ -6,10 +6,8 @@
 #include <palpate/core/status.hpp>
 #include <palpate/core/vertex_writer.hpp>
 #include <palpate/response/contact_system.hpp>
-#include <palpate/response/response_display.hpp>
+#include <palpate/response/response_drawing.hpp>
 #include <palpate/response/sphere_contact.hpp>
-
-#include <type_traits>
 
 namespace palpate {
 
@@ -27,7 +25,7 @@ class ResponseTick {
         near_(Capacity * 3 * field.stride(), 0.f),
         weight_(field.touch().solved(), 0.f),
         moment_(3 * field.touch().solved(), 0.f),
-        bends_(field.bends(), field.stride()) {
+        drawing_(field) {
     patch_.reserve(weight_.size());
   }
 
@@ -102,33 +100,13 @@ class ResponseTick {
   template <class Emit>
   void each(const ResponseDisplay& display, Emit& emit) noexcept {
     combine();
-    const SolveMesh& m = field_->mesh();
-    const auto reach =
-        static_cast<float>(1.5 * m.length);  // beyond, the linear interpolant of 1/r is within 5 % of it
-    const auto bend_reach = static_cast<float>(4 * m.length);  // beyond, w hardly bends
-    for (const auto& span : display.spans()) {
-      FixedVector<std::uint32_t, Capacity> close;
-      bool bent = false;
-      for (std::uint32_t c = 0; c < count_; ++c) {
-        const float size = span.radius + near_field_[c].a,
-                    r2 = (span.centre - near_field_[c].place).squaredNorm();
-        if (r2 < (size + reach) * (size + reach)) close.push_back(c);
-        bent = bent || r2 < (size + bend_reach) * (size + bend_reach);
-      }
-      Bend bend;
-      const bool free = !m.fixed_triangle[span.triangle];
-      bent = bent && free && bends_.find(span.triangle, near_field_, count_, bend_reach, bend);
-      if (free && !close.empty())
-        refine(display, span, bent ? &bend : nullptr, close, reach, emit);
-      else
-        spread(display, span, bent ? &bend : nullptr, emit);
-    }
+    drawing_.each(display, drawn(), emit);
   }
 
  private:
   using Lane = detail::Lane;
   using Lane3 = detail::Lane3;
-  using Bend = detail::BentEdges::OfTriangle;
+  using Wide = detail::FloatRegister;
   template <Real S>
   struct Put {
     detail::VertexWriter<S> to;
@@ -137,7 +115,6 @@ class ResponseTick {
       to.put_apart([this, slot](std::size_t k) { return vertex[slot + k]; }, u.x, u.y, u.z);
     }
   };
-  static constexpr std::uint32_t lanes = detail::lane_size;
 
   // Near fields and columns of all contacts, summed at the solve mesh's vertices.
   void combine() noexcept {
@@ -172,10 +149,11 @@ class ResponseTick {
       detail::ContactNear& near = near_field_[c] = contact_.near_of(k);
       if (carried < 1) near.scale(static_cast<float>(carried));
       float* own = &near_[c * 3 * n];
-      for (std::size_t v = 0; v < n; v += lanes) {
-        const Lane3 u =
-            near({detail::lane_at(field_->coordinate(0) + v), detail::lane_at(field_->coordinate(1) + v),
-                  detail::lane_at(field_->coordinate(2) + v)});
+      for (std::size_t v = 0; v < n; v += sizeof(Wide) / sizeof(float)) {
+        const auto at = [this, v](int axis) {
+          return detail::load_vector<Wide>(field_->coordinate(axis) + v);
+        };
+        const auto u = near(detail::Axes<Wide>{at(0), at(1), at(2)});
         detail::store_vector(own + v, u.x);
         detail::store_vector(own + n + v, u.y);
         detail::store_vector(own + 2 * n + v, u.z);
@@ -185,17 +163,10 @@ class ResponseTick {
     const Row free(field_->is_free(), static_cast<Eigen::Index>(n));
     for (std::size_t axis = 0; axis < 3; ++axis) sum.segment(Eigen::Index(axis * n), Eigen::Index(n)) *= free;
     hold_back();
-    read_rest();
+    drawing_.read(total_.data(), drawn());
   }
-
-  // For the bends: the field less the near fields, which need none, as they are exact near by.
-  void read_rest() noexcept {
-    using Row = Eigen::Map<const Eigen::ArrayXf>;
-    const auto size = static_cast<Eigen::Index>(total_.size());
-    Eigen::Map<Eigen::ArrayXf> rest(second_.data(), size);
-    rest = Row(total_.data(), size);
-    for (std::size_t c = 0; c < count_; ++c) rest -= Row(&near_[c * total_.size()], size);
-    bends_.read(second_.data(), field_->stride());
+  [[nodiscard]] detail::DrawnContacts<Capacity> drawn() const noexcept {
+    return {contact_, near_field_, near_.data(), count_};
   }
 
   // A body may move farther than the tool by its levers; a field beyond 4 d is one that the mesh does not resolve. It is
@@ -237,99 +208,6 @@ class ResponseTick {
     Eigen::Map<Eigen::ArrayXf>(total_.data(), size) += static_cast<float>(share) * second;
   }
 
-  // Linear over one triangle of the solve mesh, by coordinate: corner 0, and the edges from it.
-  struct Linear {
-    float at0[3], edge1[3], edge2[3];
-    Linear() = default;
-    Linear(const float* x, std::size_t n, const std::array<std::uint32_t, 3>& t) noexcept {
-      for (std::size_t i = 0; i < 3; ++i, x += n)
-        at0[i] = x[t[0]], edge1[i] = x[t[1]] - x[t[0]], edge2[i] = x[t[2]] - x[t[0]];
-    }
-    [[nodiscard]] PALPATE_INLINE Lane3 operator()(const Lane& b1, const Lane& b2) const noexcept {
-      return {at0[0] + b1 * edge1[0] + b2 * edge2[0], at0[1] + b1 * edge1[1] + b2 * edge2[1],
-              at0[2] + b1 * edge1[2] + b2 * edge2[2]};
-    }
-  };
-  template <class Emit>
-  void spread(const ResponseDisplay& display, const ResponseDisplay::Span& span, const Bend* bend,
-              Emit& emit) const noexcept {
-    const Linear total(total_.data(), field_->stride(), field_->mesh().triangles[span.triangle]);
-    using Out = std::conditional_t<std::is_copy_assignable_v<Emit>, Emit, Emit&>;
-    Out out = emit;  // a copy is in registers: what it writes might be any of it otherwise
-    if (bend == nullptr) {
-      for (std::uint32_t i = span.begin; i < span.end; i += lanes)
-        out(i, total(detail::lane_at(display.b1() + i), detail::lane_at(display.b2() + i)));
-    } else {
-      for (std::uint32_t i = span.begin; i < span.end; i += lanes) {
-        const Lane b1 = detail::lane_at(display.b1() + i), b2 = detail::lane_at(display.b2() + i);
-        Lane3 u = total(b1, b2);
-        u += (*bend)(b1, b2);
-        out(i, u);
-      }
-    }
-    if constexpr (std::is_copy_assignable_v<Emit>) emit = out;
-  }
-
-  // The same with the near fields exact, fading to their interpolants at the end of their reach.
-  template <class Emit>
-  void refine(const ResponseDisplay& display, const ResponseDisplay::Span& span, const Bend* bend,
-              const FixedVector<std::uint32_t, Capacity>& close, float reach, Emit& emit) const noexcept {
-    const auto& t = field_->mesh().triangles[span.triangle];
-    const std::size_t n = field_->stride();
-    const Linear total(total_.data(), n, t);
-    std::array<Linear, Capacity> own;
-    for (auto c : close) own[c] = Linear(&near_[c * 3 * n], n, t);
-    for (std::uint32_t i = span.begin; i < span.end; i += lanes) {
-      const Lane b1 = detail::lane_at(display.b1() + i), b2 = detail::lane_at(display.b2() + i);
-      const Lane3 at{detail::lane_at(display.x() + i), detail::lane_at(display.y() + i),
-                     detail::lane_at(display.z() + i)};
-      Lane3 u = total(b1, b2);
-      if (bend != nullptr) u += (*bend)(b1, b2);
-      bool held = false;
-      for (auto c : close) {
-        const detail::ContactNear& k = near_field_[c];
-        const Lane rx = at.x - k.place.x(), ry = at.y - k.place.y(), rz = at.z - k.place.z(),
-                   r2 = rx * rx + ry * ry + rz * rz;
-        const float nearest = detail::least_of(r2);
-        if (nearest >= (reach + k.a) * (reach + k.a)) continue;
-        held = held || nearest < 5 * k.a * k.a;  // beyond what a ball's patch can reach
-        const Lane weight = detail::between((reach + k.a - detail::root(r2)) * (4 / reach), 0, 1);
-        const Lane3 exact = k(at), linear = own[c](b1, b2);
-        u.x += weight * (exact.x - linear.x);
-        u.y += weight * (exact.y - linear.y);
-        u.z += weight * (exact.z - linear.z);
-      }
-      if (held)
-        for (auto c : close) hold(contact_[c], near_field_[c], at, u);
-      emit(i, u);
-    }
-  }
-
-  // The patch moves by d, as far as the contact grips; beneath a ball the surface lies on it.
-  static void hold(const detail::PlacedContact& c, const detail::ContactNear& near, const Lane3& at,
-                   Lane3& u) noexcept {
-    const Lane rx = at.x - near.place.x(), ry = at.y - near.place.y(), rz = at.z - near.place.z(),
-               r2 = rx * rx + ry * ry + rz * rz;
-    if (c.ball > 0) {
-      for (std::uint32_t l = 0; l < lanes; ++l) {
-        if (r2[l] > 4 * near.a * near.a) continue;
-        Vec3<double> v(double(u.x[l]), double(u.y[l]), double(u.z[l]));
-        detail::rest_on_ball(c.m, c.d.dot(c.m), c.ball, c.a,
-                             Vec3<double>(double(at.x[l]), double(at.y[l]), double(at.z[l])) - c.x, v);
-        u.x[l] = static_cast<float>(v[0]), u.y[l] = static_cast<float>(v[1]),
-        u.z[l] = static_cast<float>(v[2]);
-      }
-      return;
-    }
-    // Over to the field outside within a fiftieth of the radius: a vertex that comes in moves fast, and does not jump.
-    const Vec3<float> d = c.d.template cast<float>();
-    const Lane inside =
-        detail::between(51.f - 50.f / near.a * detail::root(r2), 0, 1) * static_cast<float>(c.grip);
-    u.x += inside * (d.x() - u.x);
-    u.y += inside * (d.y() - u.y);
-    u.z += inside * (d.z() - u.z);
-  }
-
   const ResponseField* field_;
   detail::ContactSystem<Capacity> contact_;
   std::array<detail::ContactNear, Capacity> near_field_{};
@@ -340,7 +218,7 @@ class ResponseTick {
   std::vector<float> weight_;         // per solved node: its part of a contact's force; 0 between uses
   std::vector<float> moment_;         // three numbers each, likewise
   std::vector<std::uint32_t> patch_;  // nodes with a part; never more than reserved
-  detail::BentEdges bends_;
+  detail::ResponseDrawing<Capacity> drawing_;
 };
 
 }  // namespace palpate

@@ -88,7 +88,7 @@ class TriangleBvh {
                            const Visit& visit) const noexcept {
     return closest_among(x, start, grow, visit,
                          [this](const Cull& cull, const float& limit, const auto& meet) {
-                           walk(
+                           this->walk(
                                cull, limit, [](std::uint32_t, std::size_t, float) { return true; }, meet);
                          });
   }

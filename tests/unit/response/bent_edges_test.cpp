@@ -15,10 +15,15 @@ SolveMesh cube() {
     fixed.push_back(mesh.vertices[t[0]].y() + mesh.vertices[t[1]].y() + mesh.vertices[t[2]].y() < 1e-9);
   return make_solve_mesh(SmoothSurface(mesh), fixed, {.vertices = 300});
 }
-struct Near {
-  Vec3<float> place;
-  float a = 0.005f;
-};
+detail::ContactNear contact_at(const V& place) {
+  detail::ContactNear near{};
+  near.place = place.cast<float>();
+  near.m = Vec3<float>(0, -1, 0);
+  near.along = near.tilt = near.turn = near.push = Vec3<float>::Zero();
+  near.shear.setZero();
+  near.a = 0.005f;
+  return near;
+}
 // A quadratic field at the mesh's vertices.
 V u(const V& x) { return V(x.x() * x.x() + x.z(), 2 * x.x() * x.z(), 0.1 - x.z() * x.z()); }
 }  // namespace
@@ -27,23 +32,23 @@ TEST_CASE("a quadratic field is drawn exactly on a face, near a contact; far fro
   const SolveMesh mesh = cube();
   const BendTable table(mesh, detail::EdgeBend(mesh));
   const std::size_t n = ResponseField::padded(mesh.vertices.size());
-  std::vector<float> field(3 * n, 0.f);
+  std::vector<float> field(4 * n, 0.f);
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    for (std::size_t i = 0; i < 3; ++i) field[i * n + v] = float(u(mesh.vertices[v])[Eigen::Index(i)]);
-  detail::BentEdges bent(table, n);
+    for (std::size_t i = 0; i < 3; ++i) field[4 * v + i] = float(u(mesh.vertices[v])[Eigen::Index(i)]);
+  const std::vector<float> none(3 * n, 0.f);  // a contact without a force
+  detail::BentEdges<1> bent(table, n);
   const float reach = 0.06f;
   std::size_t checked = 0;
   for (const V& place :
        {V(0.03, 0.1, 0.03), V(0.07, 0.1, 0.06)}) {  // the second: nothing is left of the first
-    const std::array<Near, 1> contact{{place.cast<float>(), 0.005f}};
-    bent.read(field.data(), n);
+    bent.read(field.data(), none.data(), n, {contact_at(place)}, 1, reach);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const auto& c = mesh.triangles[t];
       const V &p = mesh.vertices[c[0]], &q = mesh.vertices[c[1]], &r = mesh.vertices[c[2]];
       const V middle = (p + q + r) / 3;
       const double away = (middle - place).norm();
-      detail::BentEdges::OfTriangle bend;
-      const bool any = bent.find(t, contact, 1, reach, bend);
+      detail::BentEdges<1>::OfTriangle bend;
+      const bool any = bent.find(t, bend);
       if (away > reach + 0.005 + 0.02) CHECK(!any);
       if (away > 0.6 * reach || std::min({p.y(), q.y(), r.y()}) < 0.1 - 1e-9) continue;
       REQUIRE(any);
@@ -58,4 +63,58 @@ TEST_CASE("a quadratic field is drawn exactly on a face, near a contact; far fro
     }
   }
   CHECK(checked > 40);
+}
+
+TEST_CASE("near fields are drawn by their values at the middles of edges, a contact's own and all of them") {
+  const SolveMesh mesh = cube();
+  const BendTable table(mesh, detail::EdgeBend(mesh));
+  const std::size_t n = ResponseField::padded(mesh.vertices.size());
+  std::array<detail::ContactNear, 2> contact{contact_at(V(0.03, 0.1, 0.03)), contact_at(V(0.07, 0.1, 0.06))};
+  contact[0].normal = 1, contact[1].normal = 0.5f;
+  const auto near = [&contact](std::size_t c, const V& x) {
+    const auto at = [&x](int axis) { return detail::four(float(x[axis])); };
+    const detail::Lane3 u = contact[c](detail::Lane3{at(0), at(1), at(2)});
+    return V(u.x[0], u.y[0], u.z[0]);
+  };
+  std::vector<float> total(4 * n, 0.f), own(2 * 3 * n, 0.f);  // nothing but near fields
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    for (std::size_t c = 0; c < 2; ++c)
+      for (std::size_t i = 0; i < 3; ++i) {
+        own[(3 * c + i) * n + v] = float(near(c, mesh.vertices[v])[Eigen::Index(i)]);
+        total[4 * v + i] += own[(3 * c + i) * n + v];
+      }
+  detail::BentEdges<2> bent(table, n);
+  bent.read(total.data(), own.data(), n, contact, 2, 0.06f);
+  std::size_t checked = 0;
+  double linear_error = 0, bent_error = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& k = mesh.triangles[t];
+    const V &p = mesh.vertices[k[0]], &q = mesh.vertices[k[1]], &r = mesh.vertices[k[2]];
+    if (std::min({p.y(), q.y(), r.y()}) < 0.1 - 1e-9) continue;
+    detail::BentEdges<2>::OfTriangle all, part;
+    V apart = V::Zero();
+    const detail::Lane third = detail::four(1.f / 3), half = detail::four(0.5f);
+    const auto value = [](const detail::Lane3& u) { return V(u.x[0], u.y[0], u.z[0]); };
+    for (std::size_t c = 0; c < 2; ++c) {
+      const V middle = (p + q + r) / 3;
+      const double away = (middle - contact[c].place.cast<double>()).norm();
+      if (!bent.find_near(c, t, part)) {
+        CHECK(away > 0.045);
+        continue;
+      }
+      apart += value(part(third, third));
+      if (away < 0.02 || away > 0.045 - 0.01) continue;  // next to the patch nothing of second degree will do
+      // At the middle of an edge it is the field itself.
+      CHECK((0.5 * (near(c, q) + near(c, r)) + value(part(half, half)) - near(c, 0.5 * (q + r))).norm() <
+            1e-4 * near(c, q).norm());
+      const V linear = (near(c, p) + near(c, q) + near(c, r)) / 3;
+      linear_error += (linear - near(c, middle)).norm();
+      bent_error += (linear + value(part(third, third)) - near(c, middle)).norm();
+      ++checked;
+    }
+    if (bent.find(t, all))
+      CHECK((value(all(third, third)) - apart).norm() < 1e-3);  // of a field of some 100; nothing else bends
+  }
+  CHECK(checked > 40);
+  CHECK(bent_error < 0.5 * linear_error);  // what is left is of third degree: less by length over distance
 }
