@@ -3,10 +3,10 @@
 
 /// @file  Elastic shape in closed form, without a solve at set-up: the body between two half-spaces.
 
+#include <palpate/core/vertex_writer.hpp>
 #include <palpate/deformation/concept.hpp>
 #include <palpate/deformation/fixed_base.hpp>
 #include <palpate/deformation/mesh_normals.hpp>
-#include <palpate/core/vertex_writer.hpp>
 
 #include <Eigen/LU>
 
@@ -100,8 +100,8 @@ class HalfSpaceDeformation {
   static constexpr double scale = 1 / (4 * std::numbers::pi);  // of near_field.hpp
   using V = Vec3<double>;
   using Screw = detail::Screw;
-  using Lane = detail::Lane;
-  static constexpr std::size_t lane = detail::lane_size;
+  using Lane = detail::FloatRegister;
+  static constexpr std::size_t lane = sizeof(Lane) / sizeof(float);
 
   struct Contact {
     V x, m, d;  // place, unit normal into the body, displacement [m]
@@ -271,18 +271,21 @@ class HalfSpaceDeformation {
         for (std::size_t v = 0; v < n; ++v) out[v] = x[v] + moves[v] * u[v];
     }
     if (!p_.normals) return;
-    for (std::size_t v = 0; v < n; v += lane)
+    for (std::size_t v = 0; v < n; v += 4)
       normals_.places().set_row(v, &now_[0][v], &now_[1][v], &now_[2][v]);
   }
 
+  [[nodiscard]] static PALPATE_INLINE Lane lane_at(const float* from) noexcept {
+    return detail::load_vector<Lane>(from);
+  }
   // A vector in every place of a lane, and lanes of vectors.
   struct Lanes {
     Lane x, y, z;
     PALPATE_INLINE Lanes(const Lane& a, const Lane& b, const Lane& c) noexcept : x(a), y(b), z(c) {}
     PALPATE_INLINE explicit Lanes(const V& v) noexcept
-        : x(detail::four(static_cast<float>(v.x()))),
-          y(detail::four(static_cast<float>(v.y()))),
-          z(detail::four(static_cast<float>(v.z()))) {}
+        : x(detail::splat<Lane>(static_cast<float>(v.x()))),
+          y(detail::splat<Lane>(static_cast<float>(v.y()))),
+          z(detail::splat<Lane>(static_cast<float>(v.z()))) {}
     [[nodiscard]] PALPATE_INLINE Lane dot(const Lanes& o) const noexcept {
       return x * o.x + y * o.y + z * o.z;
     }
@@ -298,7 +301,7 @@ class HalfSpaceDeformation {
     }
   };
   [[nodiscard]] PALPATE_INLINE Lanes from(const Lanes& o, std::size_t v) const noexcept {
-    return {detail::lane_at(&x_[v]) - o.x, detail::lane_at(&y_[v]) - o.y, detail::lane_at(&z_[v]) - o.z};
+    return {lane_at(&x_[v]) - o.x, lane_at(&y_[v]) - o.y, lane_at(&z_[v]) - o.z};
   }
 
   void add_base() noexcept {
@@ -306,8 +309,9 @@ class HalfSpaceDeformation {
     const Lanes o(base_.middle()), m(inward), shift(motion_.template head<3>()),
         turn(motion_.template tail<3>());
     const Lanes t(tangential<double>(force, inward)), k(inward.cross(moment));
-    const Lane fn = detail::four(static_cast<float>(force.dot(inward))),
-               twist = detail::four(static_cast<float>(moment.dot(inward))), one = detail::four(1);
+    const Lane fn = detail::splat<Lane>(static_cast<float>(force.dot(inward))),
+               twist = detail::splat<Lane>(static_cast<float>(moment.dot(inward))),
+               one = detail::splat<Lane>(1);
     const Profile& b = profile_;
     for (std::size_t v = 0; v < x_.size(); v += lane) {
       const Lanes r = from(o, v);
@@ -315,34 +319,34 @@ class HalfSpaceDeformation {
       Lanes p = r;
       p.add(-z, m);
       const Lane tp = p.dot(t), kp = p.dot(k);
-      const Lane in = fn * detail::lane_at(&b.force_in[v]) + tp * detail::lane_at(&b.shear_in[v]) +
-                      kp * detail::lane_at(&b.tilt_in[v]);
-      const Lane down = fn * detail::lane_at(&b.force_down[v]) + tp * detail::lane_at(&b.shear_down[v]) +
-                        kp * detail::lane_at(&b.tilt_down[v]);
+      const Lane in =
+          fn * lane_at(&b.force_in[v]) + tp * lane_at(&b.shear_in[v]) + kp * lane_at(&b.tilt_in[v]);
+      const Lane down =
+          fn * lane_at(&b.force_down[v]) + tp * lane_at(&b.shear_down[v]) + kp * lane_at(&b.tilt_down[v]);
       Lanes u = shift;
       u.add(in, p);
       u.add(down, m);
-      u.add(detail::lane_at(&b.shear_along[v]), t);
-      u.add(detail::lane_at(&b.tilt_along[v]), k);
-      u.add_cross(twist * detail::lane_at(&b.twist[v]), m, p);
+      u.add(lane_at(&b.shear_along[v]), t);
+      u.add(lane_at(&b.tilt_along[v]), k);
+      u.add_cross(twist * lane_at(&b.twist[v]), m, p);
       u.add_cross(one, turn, r);
       put(u, v);
     }
   }
 
   void add_contact(const Contact& c, const V& force) noexcept {
-    using detail::larger, detail::smaller, detail::four;
+    using detail::larger, detail::smaller, detail::splat;
     const Lanes o(c.x), m(c.m), t(scale * tangential<double>(force, c.m));
     const float a = static_cast<float>(c.a), nu = static_cast<float>(p_.nu),
                 fn = static_cast<float>(scale * force.dot(c.m));
     for (std::size_t v = 0; v < x_.size(); v += lane) {
       const Lanes r = from(o, v);
-      const Lane z = r.dot(m), square = larger(r.dot(r), four(1e-12f * a * a));
+      const Lane z = r.dot(m), square = larger(r.dot(r), splat<Lane>(1e-12f * a * a));
       Lanes p = r;
       p.add(-z, m);
-      const Lane depth = larger(z * (1.f - smaller(a * a / square, four(1))), Lane{});
+      const Lane depth = larger(z * (1.f - smaller(a * a / square, splat<Lane>(1))), Lane{});
       const auto w = Disc<Lane, float>(p.dot(p), depth, a).flat(fn, p.dot(t), nu);
-      Lanes u{detail::lane_at(&ux_[v]), detail::lane_at(&uy_[v]), detail::lane_at(&uz_[v])};
+      Lanes u{lane_at(&ux_[v]), lane_at(&uy_[v]), lane_at(&uz_[v])};
       u.add(w.in_plane, p);
       u.add(w.normal, m);
       u.add(w.along, t);
