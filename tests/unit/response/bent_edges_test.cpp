@@ -47,7 +47,7 @@ TEST_CASE("a quadratic field is drawn exactly on a face, near a contact; far fro
       const V &p = mesh.vertices[c[0]], &q = mesh.vertices[c[1]], &r = mesh.vertices[c[2]];
       const V middle = (p + q + r) / 3;
       const double away = (middle - place).norm();
-      detail::BentEdges<1>::OfTriangle bend;
+      detail::BentEdges<1>::OfTriangle bend{};
       const bool any = bent.find(t, bend);
       if (away > reach + 0.005 + 0.02) CHECK(!any);
       if (away > 0.6 * reach || std::min({p.y(), q.y(), r.y()}) < 0.1 - 1e-9) continue;
@@ -91,7 +91,7 @@ TEST_CASE("near fields are drawn by their values at the middles of edges, a cont
     const auto& k = mesh.triangles[t];
     const V &p = mesh.vertices[k[0]], &q = mesh.vertices[k[1]], &r = mesh.vertices[k[2]];
     if (std::min({p.y(), q.y(), r.y()}) < 0.1 - 1e-9) continue;
-    detail::BentEdges<2>::OfTriangle all, part;
+    detail::BentEdges<2>::OfTriangle all{}, part{};
     V apart = V::Zero();
     const detail::Lane third = detail::four(1.f / 3), half = detail::four(0.5f);
     const auto value = [](const detail::Lane3& u) { return V(u.x[0], u.y[0], u.z[0]); };

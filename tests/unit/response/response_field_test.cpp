@@ -103,7 +103,7 @@ TEST_CASE("near field of second order: the patch moves as one, no jump at its ed
     const auto lane = [](double value) { return detail::four(static_cast<float>(value)); };
     V u = V::Zero();
     for (int order = 0; order < 2; ++order) {
-      const detail::Lane3 part = both[order]({lane(x.x()), lane(x.y()), lane(x.z())});
+      const detail::Lane3 part = both[order](detail::Lane3{lane(x.x()), lane(x.y()), lane(x.z())});
       u += (order == 0 ? 1 : -1) * V(double(part.x[0]), double(part.y[0]), double(part.z[0]));
     }
     return u;
