@@ -181,7 +181,7 @@ class BentEdges {
     const auto& [x, y, z] = table_->middles();
     for (std::size_t e = 0; e < x.size(); e += lane_size) {
       const Lane ex = lane_at(&x[e]), ey = lane_at(&y[e]), ez = lane_at(&z[e]);
-      Lane without = four(1);
+      Lane without = four(1), most{};
       for (std::size_t c = 0; c < count; ++c) {
         const Vec3<float>& place = near[c].place;
         const Lane rx = ex - place.x(), ry = ey - place.y(), rz = ez - place.z();
@@ -189,8 +189,9 @@ class BentEdges {
         const Lane share = between(Lane(inside * (4 / reach)), 0, 1);
         store_vector(&own_[c].share[e], share);
         without *= 1 - share;
+        most = larger(most, share);
       }
-      store_vector(&all_.share[e], Lane(1 - without));
+      store_vector(&all_.share[e], larger(1 - without, most));  // above 0 where one is, whatever the rounding
     }
   }
   void bend_near(const ContactNear& near, const float* own, std::size_t stride, Bends& out) noexcept {

@@ -117,4 +117,21 @@ TEST_CASE("near fields are drawn by their values at the middles of edges, a cont
   }
   CHECK(checked > 40);
   CHECK(bent_error < 0.5 * linear_error);  // what is left is of third degree: less by length over distance
+
+  // What has been drawn before does not count: the same bits.
+  const auto drawn = [&bent, &mesh] {
+    std::vector<float> out;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      detail::BentEdges<2>::OfTriangle bend{};
+      if (bent.find(t, bend))
+        for (const detail::Lane& edge : bend.edge) out.insert(out.end(), {edge[0], edge[1], edge[2]});
+    }
+    return out;
+  };
+  const std::vector<float> first = drawn();
+  for (double x = 0.01; x < 0.1; x += 0.007)
+    bent.read(total.data(), own.data(), n, {contact_at(V(x, 0.1, x)), contact_at(V(0.1, x, 0.05))}, 2, 0.06f);
+  CHECK(drawn() != first);
+  bent.read(total.data(), own.data(), n, contact, 2, 0.06f);
+  CHECK(drawn() == first);
 }
