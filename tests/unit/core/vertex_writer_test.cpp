@@ -44,7 +44,7 @@ TEST_CASE_TEMPLATE(
       for (std::size_t k = 0; k < 3; ++k) place[k].push_back(coordinate(v, k));
     const auto vertex = [&order](std::size_t i) { return order[i]; };
 
-    for (const int way : {0, 1, 2}) {  // in one go, by fours in a row or not, by fours
+    for (const int way : {0, 1, 2, 3}) {  // in one go, by fours in a row or not, by fours, row by row
       constexpr unsigned char untouched = 0xa5;
       std::vector<unsigned char> bytes(count * stride + 16, untouched);
       const detail::VertexWriter<T> to(reinterpret_cast<T*>(bytes.data()), stride);
@@ -54,7 +54,13 @@ TEST_CASE_TEMPLATE(
             return detail::load_vector<detail::Float4>(&place[k][i]);
           };
           const auto four = [&](std::size_t k) { return vertex(i + k); };
-          if (way == 1)
+          const auto in_order = [&](std::size_t k) {
+            return detail::Float4{coordinate(std::uint32_t(i), k), coordinate(std::uint32_t(i + 1), k),
+                                  coordinate(std::uint32_t(i + 2), k), coordinate(std::uint32_t(i + 3), k)};
+          };
+          if (way == 3)
+            to.put_row(i, in_order(0), in_order(1), in_order(2));
+          else if (way == 1)
             to.put_four(four, part(0), part(1), part(2));
           else
             to.put_apart(four, part(0), part(1), part(2));

@@ -154,7 +154,16 @@ TEST_CASE("places are the same put one by one, in a row or anywhere") {
     row.set_row(first, at[0], at[1], at[2]);
     anywhere.set_four(&order[first], mixed[0], mixed[1], mixed[2]);
   }
-  anywhere.complete();
+  std::size_t rows = 0;
+  anywhere.complete(true, [&](std::size_t first, const auto& px, const auto& py, const auto& pz) {
+    CHECK(first == 4 * rows++);
+    for (std::uint32_t v = std::uint32_t(first); v < std::min<std::size_t>(first + 4, 7); ++v) {
+      CHECK(px[v - first] == x(v));
+      CHECK(py[v - first] == x(v) + 1);
+      CHECK(pz[v - first] == x(v) + 2);
+    }
+  });
+  CHECK(rows == 2);
   for (const auto* places : {&row, &anywhere})
     for (std::uint32_t v = 0; v < 7; ++v) {
       CHECK(places->packed()[v].x == one.packed()[v].x);
