@@ -96,7 +96,7 @@ class ResponseTick {
   /// The same, handed out: emit(slot, u) with a lane of displacements from that slot on; a vertex may have several slots,
   /// all the same. An `emit` that can be assigned is copied and put back.
   ///
-  /// Total field at the solve mesh's vertices, interpolated; near a contact u_near is taken at the vertex itself instead.
+  /// How: response_drawing.hpp.
   template <class Emit>
   void each(const ResponseDisplay& display, Emit& emit) noexcept {
     combine();
@@ -104,14 +104,12 @@ class ResponseTick {
   }
 
  private:
-  using Lane = detail::Lane;
-  using Lane3 = detail::Lane3;
   using Wide = detail::FloatRegister;
   template <Real S>
   struct Put {
     detail::VertexWriter<S> to;
     const std::uint32_t* vertex;
-    PALPATE_INLINE void operator()(std::size_t slot, const Lane3& u) const noexcept {
+    PALPATE_INLINE void operator()(std::size_t slot, const detail::Lane3& u) const noexcept {
       to.put_apart([this, slot](std::size_t k) { return vertex[slot + k]; }, u.x, u.y, u.z);
     }
   };
