@@ -36,6 +36,14 @@ using FloatRegister = Float4;
 using BitsRegister = Bits4;
 #endif
 
+/// How many a register V holds, and n of them rounded up to whole registers.
+template <class V>
+inline constexpr std::uint32_t entries = sizeof(V) / sizeof(float);
+template <class V>
+[[nodiscard]] constexpr std::size_t whole(std::size_t n) noexcept {
+  return (n + entries<V> - 1) / entries<V> * entries<V>;
+}
+
 template <class V>
 [[nodiscard]] PALPATE_INLINE V load_vector(const float* from) noexcept {
   V x;
@@ -61,6 +69,16 @@ PALPATE_INLINE void transpose(Float4& a, Float4& b, Float4& c, Float4& d) noexce
   b = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
   c = __builtin_shufflevector(ab_high, cd_high, 0, 1, 4, 5);
   d = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
+}
+
+/// Rows of four one after the other: x0 y0 z0 0, x1 y1 z1 0, ..
+PALPATE_INLINE void store_by_fours(float* to, Float4 x, Float4 y, Float4 z) noexcept {
+  Float4 none{};
+  transpose(x, y, z, none);
+  store_vector(to, x);
+  store_vector(to + 4, y);
+  store_vector(to + 8, z);
+  store_vector(to + 12, none);
 }
 
 /// Rows one after the other: x0 y0 z0 x1, y1 z1 x2 y2, z2 x3 y3 z3.
@@ -154,7 +172,7 @@ template <class V>
 /// Lowers `least`, entry by entry, to those of x, four by four.
 template <class V>
 PALPATE_INLINE void take_least(Float4& least, const V& x) noexcept {
-  for (std::size_t from = 0; from < sizeof(V) / sizeof(float); from += 4)
+  for (std::size_t from = 0; from < entries<V>; from += entries<Float4>)
     least = smaller(four_of(x, from), least);
 }
 #if defined(__AVX__)

@@ -101,7 +101,7 @@ class HalfSpaceDeformation {
   using V = Vec3<double>;
   using Screw = detail::Screw;
   using Lane = detail::FloatRegister;
-  static constexpr std::size_t lane = sizeof(Lane) / sizeof(float);
+  static constexpr std::size_t lane = detail::entries<Lane>;
 
   struct Contact {
     V x, m, d;  // place, unit normal into the body, displacement [m]
@@ -124,7 +124,7 @@ class HalfSpaceDeformation {
   }
 
   void set_vertices(const MeshData<S>& mesh) {
-    const std::size_t n = mesh.vertices.size(), padded = (n + lane - 1) / lane * lane;
+    const std::size_t n = mesh.vertices.size(), padded = detail::whole<Lane>(n);
     for (auto& list : now_) list.assign(padded, 0.f);
     for (auto* list : {&x_, &y_, &z_, &ux_, &uy_, &uz_}) list->assign(padded, 0.f);
     for (auto* list : {&profile_.force_in, &profile_.force_down, &profile_.shear_in, &profile_.shear_down,

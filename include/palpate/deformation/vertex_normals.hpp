@@ -230,7 +230,7 @@ class VertexNormals {
     each_area(group, places, [&](const auto& vertex, auto& x, auto& y, auto& z) {
       const auto square = normalise(x, y, z);
       bool any = false;
-      for (std::uint32_t k = 0; k < sizeof x / sizeof(float); ++k) {
+      for (std::uint32_t k = 0; k < detail::entries<std::remove_cvref_t<decltype(x)>>; ++k) {
         if (square[k] > collapsed) continue;
         const Packed3 normal = rest(vertex(k));
         x[k] = normal.x, y[k] = normal.y, z[k] = normal.z;
@@ -317,7 +317,7 @@ class VertexNormals {
   static PALPATE_INLINE void by_fours(const Vertex& vertex, const V& x, const V& y, const V& z,
                                       const Emit& emit) noexcept {
     using detail::four_of;
-    for (std::uint32_t from = 0; from < sizeof(V) / sizeof(float); from += floats)
+    for (std::uint32_t from = 0; from < detail::entries<V>; from += floats)
       emit([&vertex, from](std::size_t k) { return vertex(from + static_cast<std::uint32_t>(k)); },
            four_of(x, from), four_of(y, from), four_of(z, from));
   }
@@ -338,7 +338,7 @@ class VertexNormals {
     for (const Row *at = rows_.data() + group.row_begin, *const end = rows_.data() + group.row_end; at < end;
          ++at) {
       const Row row = *at;
-      for (std::uint32_t from = 0; from < in_row; from += sizeof(FloatRegister) / sizeof(float)) {
+      for (std::uint32_t from = 0; from < in_row; from += detail::entries<FloatRegister>) {
         FloatRegister x, y, z;
         with_size(row.size,
                   [&](auto size) { area(px + from, py + from, pz + from, rings + row.ring, size, x, y, z); });

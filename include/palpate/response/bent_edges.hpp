@@ -61,8 +61,8 @@ class BendTable {
   [[nodiscard]] const std::vector<std::uint32_t>& begin() const noexcept { return begin_; }
   [[nodiscard]] const std::vector<Weight>& weights() const noexcept { return weights_; }
   [[nodiscard]] std::size_t memory() const noexcept {
-    return of_triangle_.size() * sizeof(Edges) + 3 * middle_[0].size() * sizeof(float) + begin_.size() * 4 +
-           weights_.size() * sizeof(Weight);
+    return of_triangle_.size() * sizeof(Edges) + ends_.size() * sizeof(ends_[0]) +
+           3 * middle_[0].size() * sizeof(float) + begin_.size() * 4 + weights_.size() * sizeof(Weight);
   }
 
  private:
@@ -71,8 +71,7 @@ class BendTable {
     for (std::size_t t = 0; t < of_triangle_.size(); ++t)
       for (std::size_t c = 0; c < 3; ++c)
         ends_[of_triangle_[t][c]] = {mesh.triangles[t][c], mesh.triangles[t][(c + 1) % 3]};
-    constexpr std::size_t lanes = detail::lane_size;
-    for (auto& list : middle_) list.assign((size() + lanes - 1) / lanes * lanes, 1e9f);
+    for (auto& list : middle_) list.assign(detail::whole<detail::Lane>(size()), 1e9f);
     for (std::size_t e = 0; e < size(); ++e) {
       if ((*this)[e].empty()) continue;
       Vec3<double> x = 0.5 * (mesh.vertices[ends_[e][0]] + mesh.vertices[ends_[e][1]]);
@@ -112,8 +111,8 @@ class BentEdges {
     for (std::size_t c = 0; c < Capacity; ++c) own_.emplace_back(table);
   }
 
-  /// `total`: the field at the solve mesh's vertices, four numbers each; `own`: of it the near fields of `count` contacts, one after the
-  /// other, by coordinate, `stride` numbers each.
+  /// `total`: the field at the solve mesh's vertices, by coordinate, `stride` numbers each; `own`: of it the near fields of `count`
+  /// contacts, one after the other, likewise.
   void read(const float* total, const float* own, std::size_t stride,
             const std::array<ContactNear, Capacity>& near, std::size_t count, float reach) noexcept {
     find_rest(total, own, stride, count);
@@ -165,16 +164,13 @@ class BentEdges {
 
   void find_rest(const float* total, const float* own, std::size_t stride, std::size_t count) noexcept {
     for (std::size_t v = 0; v < stride; v += lane_size) {
-      Lane x{}, y{}, z{}, none{};
+      Lane x{}, y{}, z{};
       for (std::size_t c = 0; c < count; ++c) {
         const float* const near = own + 3 * stride * c + v;
         x += lane_at(near), y += lane_at(near + stride), z += lane_at(near + 2 * stride);
       }
-      transpose(x, y, z, none);
-      const auto put = [to = &rest_[4 * v], from = total + 4 * v](std::size_t k, const Lane& u) {
-        store_vector(to + 4 * k, Lane(lane_at(from + 4 * k) - u));
-      };
-      put(0, x), put(1, y), put(2, z), put(3, none);
+      store_by_fours(&rest_[4 * v], lane_at(total + v) - x, lane_at(total + stride + v) - y,
+                     lane_at(total + 2 * stride + v) - z);
     }
   }
   void find_shares(const std::array<ContactNear, Capacity>& near, std::size_t count, float reach) noexcept {
@@ -195,7 +191,7 @@ class BentEdges {
     }
   }
   void bend_near(const ContactNear& near, const float* own, std::size_t stride, Bends& out) noexcept {
-    constexpr std::size_t wide = sizeof(Wide) / sizeof(float);
+    constexpr std::size_t wide = entries<Wide>;
     const auto& middle = table_->middles();
     for (std::size_t i = 0; i < out.bent.size(); i += wide) {
       std::array<std::array<float, wide>, 3> at, mean;

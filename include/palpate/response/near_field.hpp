@@ -82,7 +82,7 @@ template <class T>
 namespace detail {
 /// Four places at a time, for the tick's loops; the long ones take as many as a register holds.
 using Lane = Float4;
-inline constexpr std::uint32_t lane_size = sizeof(Lane) / sizeof(float);
+inline constexpr std::uint32_t lane_size = entries<Lane>;
 [[nodiscard]] PALPATE_INLINE Lane lane_at(const float* from) noexcept { return load_vector<Lane>(from); }
 
 template <std::floating_point S>

@@ -147,7 +147,7 @@ class ResponseTick {
       detail::ContactNear& near = near_field_[c] = contact_.near_of(k);
       if (carried < 1) near.scale(static_cast<float>(carried));
       float* own = &near_[c * 3 * n];
-      for (std::size_t v = 0; v < n; v += sizeof(Wide) / sizeof(float)) {
+      for (std::size_t v = 0; v < n; v += detail::entries<Wide>) {
         const auto at = [this, v](int axis) {
           return detail::load_vector<Wide>(field_->coordinate(axis) + v);
         };

@@ -64,7 +64,7 @@ class ResponseDisplay {
       spans_.back().end = static_cast<std::uint32_t>(vertex_.size());
     }
     for (auto* list : {&around_.x, &around_.y, &around_.z, &around_.radius})
-      list->resize((spans_.size() + detail::lane_size - 1) / detail::lane_size * detail::lane_size);
+      list->resize(detail::whole<detail::Lane>(spans_.size()));
     size_ = points.size();
   }
 

@@ -31,21 +31,16 @@ class ResponseDrawing {
   explicit ResponseDrawing(const ResponseField& field)
       : field_(&field),
         total_(4 * field.stride(), 0.f),
-        close_((field.mesh().triangles.size() + lane_size - 1) / lane_size * lane_size),
+        close_(whole<Lane>(field.mesh().triangles.size())),
         bends_(field.bends(), field.stride()) {}
 
   /// `total`: the field at the solve mesh's vertices, by coordinate.
   void read(const float* total, const DrawnContacts<Capacity>& contacts) noexcept {
     const std::size_t n = field_->stride();
-    for (std::size_t v = 0; v < n; v += lane_size) {
-      Lane x = lane_at(total + v), y = lane_at(total + n + v), z = lane_at(total + 2 * n + v), none{};
-      transpose(x, y, z, none);
-      float* const to = &total_[4 * v];
-      store_vector(to, x), store_vector(to + 4, y);
-      store_vector(to + 8, z), store_vector(to + 12, none);
-    }
+    for (std::size_t v = 0; v < n; v += lane_size)
+      store_by_fours(&total_[4 * v], lane_at(total + v), lane_at(total + n + v), lane_at(total + 2 * n + v));
     const auto bend_reach = static_cast<float>(4 * field_->mesh().length);  // beyond, w hardly bends
-    bends_.read(total_.data(), contacts.own, n, contacts.near, contacts.count, bend_reach);
+    bends_.read(total, contacts.own, n, contacts.near, contacts.count, bend_reach);
   }
 
   /// emit(slot, u) with a lane of displacements from that slot on, until all of a display have theirs. An `emit` that can be
@@ -61,10 +56,17 @@ class ResponseDrawing {
  private:
   using Wide = FloatRegister;
   using Bend = typename BentEdges<Capacity>::OfTriangle;
-  static constexpr std::uint32_t wide = sizeof(Wide) / sizeof(float);
+  static constexpr std::uint32_t wide = entries<Wide>;
 
   // Where near fields are exact.
   [[nodiscard]] float reach() const noexcept { return static_cast<float>(field_->mesh().length); }
+  // Above 0 for a sphere that comes within reach of a contact. `S`: a number or a lane of them.
+  template <class S>
+  [[nodiscard]] PALPATE_INLINE S within_reach(const S& x, const S& y, const S& z, const S& radius,
+                                              const ContactNear& k) const noexcept {
+    const S rx = x - k.place.x(), ry = y - k.place.y(), rz = z - k.place.z(), most = radius + (k.a + reach());
+    return most * most - (rx * rx + ry * ry + rz * rz);
+  }
   // Which spans have vertices within reach of a contact, or may have.
   void find_close(const ResponseDisplay& display, const DrawnContacts<Capacity>& contacts) noexcept {
     const ResponseDisplay::Spheres& around = display.around();
@@ -72,12 +74,8 @@ class ResponseDrawing {
       const auto from = [i](const std::vector<float>& list) { return lane_at(&list[i]); };
       const Lane x = from(around.x), y = from(around.y), z = from(around.z), radius = from(around.radius);
       Lane inside = four(-1);
-      for (std::size_t c = 0; c < contacts.count; ++c) {
-        const ContactNear& k = contacts.near[c];
-        const Lane rx = x - k.place.x(), ry = y - k.place.y(), rz = z - k.place.z(),
-                   most = radius + (k.a + reach());
-        inside = larger(inside, most * most - (rx * rx + ry * ry + rz * rz));
-      }
+      for (std::size_t c = 0; c < contacts.count; ++c)
+        inside = larger(inside, within_reach(x, y, z, radius, contacts.near[c]));
       store_vector(&close_[i], inside);
     }
   }
@@ -110,16 +108,25 @@ class ResponseDrawing {
       return u;
     }
   };
-  [[nodiscard]] PALPATE_INLINE Linear total_over(std::size_t triangle) const noexcept {
+  [[nodiscard]] PALPATE_INLINE Interpolant total_over(std::size_t triangle) const noexcept {
     const auto& [p, q, r] = field_->mesh().triangles[triangle];
-    return {lane_at(&total_[4 * p]), lane_at(&total_[4 * q]), lane_at(&total_[4 * r])};
+    Interpolant u;
+    u.linear = {lane_at(&total_[4 * p]), lane_at(&total_[4 * q]), lane_at(&total_[4 * r])};
+    u.bent = !field_->mesh().fixed_triangle[triangle] && bends_.find(triangle, u.bend);
+    return u;
   }
-  // The same of a near field at the solve mesh's vertices.
-  [[nodiscard]] Linear own_over(std::size_t triangle, const float* own) const noexcept {
+  // The same of contact c's near field.
+  [[nodiscard]] Interpolant own_over(std::size_t triangle, const DrawnContacts<Capacity>& contacts,
+                                     std::size_t c) const noexcept {
     const std::size_t n = field_->stride();
-    const auto at = [n, own](std::uint32_t v) { return Lane{own[v], own[n + v], own[2 * n + v], 0}; };
+    const auto at = [n, own = contacts.own + 3 * n * c](std::uint32_t v) {
+      return Lane{own[v], own[n + v], own[2 * n + v], 0};
+    };
     const auto& [p, q, r] = field_->mesh().triangles[triangle];
-    return {at(p), at(q), at(r)};
+    Interpolant u;
+    u.linear = {at(p), at(q), at(r)};
+    u.bent = bends_.find_near(c, triangle, u.bend);
+    return u;
   }
 
   // All spans that are not close to a contact.
@@ -132,18 +139,13 @@ class ResponseDrawing {
     for (std::size_t s = 0; s < display.spans().size(); ++s) {
       if (is_close(display, s)) continue;
       const ResponseDisplay::Span span = spans[s];
-      const Linear total = total_over(span.triangle);
-      Bend bend;
-      if (field_->mesh().fixed_triangle[span.triangle] || !bends_.find(span.triangle, bend)) {
+      const Interpolant total = total_over(span.triangle);
+      if (total.bent) {
         for (std::uint32_t i = span.begin; i < span.end; i += lane_size)
           out(i, total(lane_at(weight1 + i), lane_at(weight2 + i)));
-      } else {
-        for (std::uint32_t i = span.begin; i < span.end; i += lane_size) {
-          const Lane b1 = lane_at(weight1 + i), b2 = lane_at(weight2 + i);
-          Lane3 u = total(b1, b2);
-          u += bend(b1, b2);
-          out(i, u);
-        }
+      } else {  // most: a loop without the question
+        for (std::uint32_t i = span.begin; i < span.end; i += lane_size)
+          out(i, total.linear(lane_at(weight1 + i), lane_at(weight2 + i)));
       }
     }
     if constexpr (std::is_copy_assignable_v<Emit>) emit = out;
@@ -169,17 +171,14 @@ class ResponseDrawing {
     Refined(const ResponseDrawing& drawing, const ResponseDisplay& display, std::size_t s,
             const DrawnContacts<Capacity>& contacts) noexcept {
       const std::uint32_t triangle = display.spans()[s].triangle;
-      total.linear = drawing.total_over(triangle);
-      total.bent = drawing.bends_.find(triangle, total.bend);
+      total = drawing.total_over(triangle);
       const ResponseDisplay::Spheres& around = display.around();
       for (std::uint32_t c = 0; c < contacts.count; ++c) {
-        const ContactNear& k = contacts.near[c];
-        const Vec3<float> r = Vec3<float>(around.x[s], around.y[s], around.z[s]) - k.place;
-        const float most = around.radius[s] + k.a + drawing.reach();
-        if (!(r.squaredNorm() < most * most)) continue;
+        if (!(drawing.within_reach(around.x[s], around.y[s], around.z[s], around.radius[s],
+                                   contacts.near[c]) > 0))
+          continue;
         close.push_back(c);
-        own[c].linear = drawing.own_over(triangle, contacts.own + 3 * drawing.field_->stride() * c);
-        own[c].bent = drawing.bends_.find_near(c, triangle, own[c].bend);
+        own[c] = drawing.own_over(triangle, contacts, c);
       }
     }
   };
@@ -208,7 +207,7 @@ class ResponseDrawing {
     }
     if (held)
       for (auto c : span.close) hold(contacts.contact[c], contacts.near[c], at, u);
-    for (std::uint32_t k = 0; k < sizeof(V) / sizeof(float); k += lane_size)
+    for (std::uint32_t k = 0; k < entries<V>; k += lane_size)
       emit(i + k, Lane3{four_of(u.x, k), four_of(u.y, k), four_of(u.z, k)});
   }
 
@@ -218,7 +217,7 @@ class ResponseDrawing {
     const V rx = at.x - near.place.x(), ry = at.y - near.place.y(), rz = at.z - near.place.z(),
             r2 = rx * rx + ry * ry + rz * rz;
     if (c.ball > 0) {
-      for (std::uint32_t l = 0; l < sizeof(V) / sizeof(float); ++l) {
+      for (std::uint32_t l = 0; l < entries<V>; ++l) {
         if (r2[l] > 4 * near.a * near.a) continue;
         Vec3<double> v(double(u.x[l]), double(u.y[l]), double(u.z[l]));
         rest_on_ball(c.m, c.d.dot(c.m), c.ball, c.a,

@@ -125,7 +125,7 @@ class ResponseField {
   [[nodiscard]] std::size_t memory() const noexcept {
     return columns_.size() * sizeof(float) + table_.memory() + bends_.memory();
   }
-  /// Vertices of the solve mesh, rounded up to whole lanes.
+  /// Vertices of the solve mesh, rounded up to whole registers, whatever this processor's.
   [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
   [[nodiscard]] static constexpr std::size_t padded(std::size_t vertices) noexcept {
     return (vertices + 7) / 8 * 8;
