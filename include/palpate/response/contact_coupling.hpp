@@ -51,20 +51,21 @@ struct PlacedContact {
   void hold_moments() noexcept { held = -moments.give * (moments.G * P + moments.of_loads(dipole, tilt)); }
 };
 
-/// Size of the nodes around the contact's place, interpolated.
-[[nodiscard]] inline double mean_size(const ResponseField& field, const PlacedContact& c) noexcept {
-  double size = 0;
+/// Of the nodes around the contact's place, interpolated: size or spacing.
+[[nodiscard]] inline double mean_of(double TouchNode::*length, const ResponseField& field,
+                                    const PlacedContact& c) noexcept {
+  double mean = 0;
   for (std::size_t i = 0; i < 3; ++i)
-    size += c.place.weight[Eigen::Index(i)] * field.touch().nodes()[c.place.node[i]].size;
-  return size;
+    mean += c.place.weight[Eigen::Index(i)] * field.touch().nodes()[c.place.node[i]].*length;
+  return mean;
 }
 
 /// each(part, node, level) for the spreads (PatchTable) that together are the contact's. Interpolated twice, over the place's
-/// triangle and over those that the spreads lie on: a quarter of size^2 each time.
+/// triangle and over those that the spreads lie on: a quarter of spacing^2 each time.
 template <class Each>
 void each_spread(const ResponseField& field, const PlacedContact& c, const Each& each) noexcept {
-  const double size = mean_size(field, c);
-  const PatchTable::Level level = field.table().level(c.a * c.a - 0.5 * size * size);
+  const double spacing = mean_of(&TouchNode::spacing, field, c);
+  const PatchTable::Level level = field.table().level(c.a * c.a - 0.5 * spacing * spacing);
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t l = 0; l < 2; ++l)
       each(c.share * c.place.weight[Eigen::Index(i)] * (l == 0 ? 1 - level.part : level.part),

@@ -77,8 +77,9 @@ class ContactSystem {
     c.place = field_->touch().locate(c.x);
     c.nodes.clear();
     add_place(c.nodes, c.place, 1);
-    const double size = mean_size(*field_, c);
-    c.level = field_->table().level(averaged(c, size));
+    const double size = mean_of(&TouchNode::size, *field_, c),
+                 spacing = mean_of(&TouchNode::spacing, *field_, c);
+    c.level = field_->table().level(averaged(c, spacing));
     c.sag = field_->table().sag(c.place.node, c.place.weight, c.a);
     // Far from the surface the nearest place may jump; there w has faded away.
     const double far2 = c.place.distance2 / (size * size);
@@ -100,8 +101,8 @@ class ContactSystem {
   }
 
   // s^2 of patch_table.hpp.
-  [[nodiscard]] static double averaged(const Contact& c, double size) noexcept {
-    return c.a * c.a - 0.25 * size * size;
+  [[nodiscard]] static double averaged(const Contact& c, double spacing) noexcept {
+    return c.a * c.a - 0.25 * spacing * spacing;
   }
   // Adds the solved nodes of a place.
   template <class List>

@@ -36,7 +36,7 @@ namespace detail {
 template <class Each>
 void each_moment(const TouchMesh& touch, std::size_t k, std::span<const TouchMesh::Share> shares,
                  const Each& each) noexcept {
-  const SolveMesh::Node& node = touch.nodes()[k];
+  const TouchNode& node = touch.nodes()[k];
   const auto offset = [&](const TouchMesh::Share& s) {
     return tangential(Vec3<double>(touch.nodes()[s.node].source - node.source), node.normal);
   };
@@ -49,7 +49,7 @@ void each_moment(const TouchMesh& touch, std::size_t k, std::span<const TouchMes
     square += double(s.weight) * p.squaredNorm();
   }
   square -= first.squaredNorm() / (std::max)(sum, 1e-12);
-  if (!(square > 0.1 * node.size * node.size)) return;
+  if (!(square > 0.1 * node.spacing * node.spacing)) return;
   const Vec3<double> centre = first / sum;
   const double t = std::clamp(2 * sum - 1, 0.0, 1.0), unit = t * t * (3 - 2 * t) / square;
   for (const TouchMesh::Share& s : shares)
@@ -108,7 +108,7 @@ template <class Column, class See>
 
 /// Of a patch of radius s around node k. Of six places on the edge of a quadric's patch one is within 30 degrees of its deepest.
 [[nodiscard]] inline double find_sag(const TouchMesh& touch, std::size_t k, double s) {
-  const SolveMesh::Node& node = touch.nodes()[k];
+  const TouchNode& node = touch.nodes()[k];
   const Vec3<double> t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
   double deepest = 0;
   for (std::size_t i = 0; i < 6; ++i) {

@@ -3,6 +3,7 @@
 
 /// @file  How far the body's correction w lets a contact give way: means over patches of any size, tabulated.
 
+#include <palpate/response/bent_edges.hpp>
 #include <palpate/response/moment_loads.hpp>
 #include <palpate/response/near_field.hpp>
 #include <palpate/response/parallel.hpp>
@@ -16,12 +17,12 @@ namespace palpate {
 ///
 /// with the place x of weights l_i in a triangle of nodes, W_ik the mean over a patch at node i of the field of forces
 /// spread over a patch at node k, and Q_k the mean of the loads of second order at k itself. Linear in s^2 between the
-/// tabulated s_0 = 0, s_l^2 = 2^(l-1) (size / 2)^2 with the least size, to the body's.
+/// tabulated s_0 = 0, s_l^2 = 2^(l-1) (spacing / 2)^2 with the least spacing, to the body's size.
 ///
-/// | symbol | name                                                             | unit |
-/// |--------|------------------------------------------------------------------|------|
-/// | s      | radius over which the table averages: s^2 = a^2 - (size / 2)^2   | m    |
-/// | a      | radius of the patch; size: mean edge length around               | m    |
+/// | symbol | name                                                              | unit |
+/// |--------|-------------------------------------------------------------------|------|
+/// | s      | radius over which the table averages: s^2 = a^2 - (spacing / 2)^2 | m    |
+/// | a      | radius of the patch; spacing: TouchNode's                         | m    |
 class PatchTable {
  public:
   struct Own {
@@ -51,8 +52,8 @@ class PatchTable {
   /// `column(k, l)` points to the field of load l (three forces, double force, two tilts) of node k: x of every vertex,
   /// y and z `stride` further each.
   template <class Column>
-  PatchTable(const SolveMesh& mesh, const TouchMesh& touch, unsigned threads, std::size_t stride,
-             const Column& column)
+  PatchTable(const SolveMesh& mesh, const BendTable& bends, const TouchMesh& touch, unsigned threads,
+             std::size_t stride, const Column& column)
       : unit_(unit(touch)) {
     Vec3<double> low = mesh.vertices[0], high = low;
     for (const auto& v : mesh.vertices) {
@@ -62,20 +63,19 @@ class PatchTable {
     levels_ = 2;
     while (radius2(levels_ - 1) < 0.25 * (high - low).squaredNorm()) ++levels_;
     const std::size_t n = touch.nodes().size();
-    const std::vector<Vertices> at = places(mesh, touch);
+    const std::vector<std::vector<Weight>> at = seen_at(mesh, bends, touch);
     std::vector<std::vector<Weight>> loaded(n * levels_), seen(n * levels_);  // nodes; vertices
     detail::parallel_for(n * levels_, threads, [&](std::size_t i) {
       loaded[i] = spread(touch, i / levels_, std::sqrt(radius2(i % levels_)));
       for (const Weight& w : loaded[i])
-        for (int c = 0; c < 3; ++c)
-          add(seen[i], at[w.node].vertex[std::size_t(c)], w.weight * at[w.node].weight[c]);
+        for (const Weight& v : at[w.node]) add(seen[i], v.node, w.weight * v.weight);
     });
     for (const auto& list : loaded) keep_solved(touch, list);
     moments_.resize(n * levels_);
     detail::parallel_for(n * levels_, threads, [&](std::size_t i) {
       const std::size_t k = i / levels_;
       const auto see = [&](std::uint32_t node, const auto& each) {
-        for (std::size_t c = 0; c < 3; ++c) each(at[node].vertex[c], at[node].weight[Eigen::Index(c)]);
+        for (const Weight& v : at[node]) each(v.node, v.weight);
       };
       moments_[i] = detail::find_moments(touch, k, spread(k, i % levels_), stride, column, see);
       moments_[i].sag = static_cast<float>(detail::find_sag(touch, k, std::sqrt(radius2(i % levels_))));
@@ -209,15 +209,11 @@ class PatchTable {
     std::uint32_t node;
     double weight;
   };
-  struct Vertices {
-    std::array<std::uint32_t, 3> vertex;
-    Vec3<double> weight;
-  };
 
   [[nodiscard]] static double unit(const TouchMesh& touch) {
-    double least_size = (std::numeric_limits<double>::max)();
-    for (const auto& node : touch.nodes()) least_size = (std::min)(least_size, node.size);
-    return 0.25 * least_size * least_size;
+    double least = (std::numeric_limits<double>::max)();
+    for (const auto& node : touch.nodes()) least = (std::min)(least, node.spacing);
+    return 0.25 * least * least;
   }
   [[nodiscard]] static Vec3<double> tangent(const TouchMesh& touch, std::size_t k, std::size_t number) {
     const Vec3<double>& n = touch.nodes()[k].normal;
@@ -256,33 +252,28 @@ class PatchTable {
     spread_begin_.push_back(static_cast<std::uint32_t>(spread_.size()));
   }
 
-  // Where each node's load acts, as a place of the solve mesh.
-  [[nodiscard]] static std::vector<Vertices> places(const SolveMesh& mesh, const TouchMesh& touch) {
-    std::vector<std::vector<std::uint32_t>> around(mesh.vertices.size());
-    for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-      for (auto v : mesh.triangles[t]) around[v].push_back(t);
-    std::vector<Vertices> at;
-    for (const auto& node : touch.nodes()) {
-      double best = (std::numeric_limits<double>::max)();
-      Vertices found{};
-      for (auto t : around[node.vertex]) {
-        const auto& c = mesh.triangles[t];
-        const Vec3<double>&p = mesh.vertices[c[0]], &q = mesh.vertices[c[1]], &r = mesh.vertices[c[2]];
-        const Vec3<double> w = detail::closest_on_triangle<double>(node.source, p, q, r);
-        const double distance = (w[0] * p + w[1] * q + w[2] * r - node.source).squaredNorm();
-        if (distance < best) {
-          best = distance;
-          found = {c, w};
-        }
+  // Weights of the solve mesh's vertices in the displacement at each node's place.
+  [[nodiscard]] static std::vector<std::vector<Weight>> seen_at(const SolveMesh& mesh, const BendTable& bends,
+                                                                const TouchMesh& touch) {
+    std::vector<std::vector<Weight>> out(touch.nodes().size());
+    for (std::size_t k = 0; k < out.size(); ++k) {
+      const TouchNode& node = touch.nodes()[k];
+      const Vec3<double> l = node.part.cast<double>();
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::size_t d = (c + 1) % 3;
+        add(out[k], mesh.triangles[node.triangle][c], l[Eigen::Index(c)]);
+        const double bent = 4 * l[Eigen::Index(c)] * l[Eigen::Index(d)];
+        if (bent == 0) continue;
+        for (const BendTable::Weight& w : bends[bends.of_triangle()[node.triangle][c]])
+          add(out[k], w.vertex, bent * double(w.weight));
       }
-      at.push_back(found);
     }
-    return at;
+    return out;
   }
 
   // The stuck disc's weight around the node.
   [[nodiscard]] static std::vector<Weight> spread(const TouchMesh& touch, std::size_t k, double s) {
-    const SolveMesh::Node& node = touch.nodes()[k];
+    const TouchNode& node = touch.nodes()[k];
     std::vector<Weight> patch;
     if (!(s > 0)) {
       patch.push_back({static_cast<std::uint32_t>(k), 1});

@@ -12,20 +12,14 @@
 /// bends, by 10 % at two edges from the node.)
 
 #include <palpate/response/boundary_element.hpp>
+#include <palpate/response/load_places.hpp>
 #include <palpate/response/near_field.hpp>
 
 namespace palpate {
 
-/// w for unit forces at the touchable nodes, mu = 1: column 3 j + l is the field of direction l at node touchable[j];
-/// row 3 v + i is component i at vertex v [1/m].
-struct ResponseColumns {
-  std::vector<std::uint32_t> touchable;
-  Eigen::MatrixXd w;
-};
-
 namespace detail {
 
-/// -int U t_near dS for the three unit forces at node k, at every vertex (3n x 3).
+/// -int U t_near dS for the three unit forces at a node, at every vertex (3n x 3).
 class NearSource {
  public:
   NearSource(const BoundaryElements& bem, double nu) : bem_(bem), nu_(nu) {}
@@ -36,8 +30,7 @@ class NearSource {
     Vec3d apex;       ///< barycentric, its place nearest to the load
     double distance;  ///< of that place [m]
   };
-  [[nodiscard]] std::vector<Close> close(std::uint32_t k) const {
-    const SolveMesh::Node& s = bem_.mesh().nodes[k];
+  [[nodiscard]] std::vector<Close> close(const TouchNode& s) const {
     std::vector<Close> out;
     for (std::uint32_t t = 0; t < bem_.elements().size(); ++t) {
       const Element& e = bem_.elements()[t];
@@ -49,10 +42,9 @@ class NearSource {
     return out;
   }
 
-  /// Nodal values that stand for t_near of node k on all but the close triangles (3 nodes x 3).
-  void nodal(std::uint32_t k, const std::vector<Close>& close, Eigen::Ref<Matrix> out) const {
+  /// Nodal values that stand for t_near of a node on all but the close triangles (3 nodes x 3).
+  void nodal(const TouchNode& s, const std::vector<Close>& close, Eigen::Ref<Matrix> out) const {
     const SolveMesh& m = bem_.mesh();
-    const SolveMesh::Node& s = m.nodes[k];
     for (std::uint32_t j = 0; j < m.nodes.size(); ++j) {
       const Vec3d& x = m.vertices[m.nodes[j].vertex];
       if ((x - s.source).norm() < 0.6 * s.size)  // not smooth there
@@ -63,11 +55,10 @@ class NearSource {
     raise_to_integrals(s, close, out);
   }
 
-  /// Adds -int U (t_near - nodal interpolant) over the triangles around node k.
-  void remainder(std::uint32_t k, const std::vector<Close>& close, const Eigen::Ref<const Matrix>& nodal,
+  /// Adds -int U (t_near - nodal interpolant) over the triangles around a node.
+  void remainder(const TouchNode& s, const std::vector<Close>& close, const Eigen::Ref<const Matrix>& nodal,
                  Eigen::Ref<Matrix> out) const {
     const SolveMesh& m = bem_.mesh();
-    const SolveMesh::Node& s = m.nodes[k];
     struct Point {
       Vec3d x;
       Mat3<double> f;
@@ -107,14 +98,14 @@ class NearSource {
       const double distance = (x - s.source).norm();
       Mat3<double> sum = Mat3<double>::Zero();
       if (distance > 1.5 * reach) {  // from afar, forces at the vertices do
-        for (const auto& [v, f] : lumps) sum += bem_.kelvin().displacement(m.vertices[v] - x) * f;
+        for (const auto& [v, f] : lumps) sum += bem_.kelvin().displacement(m.vertices[v] - x, f);
       } else {
         // At the node itself the mean over a patch is wanted: 1/R^2 is cut off there.
         const double hold = distance < 0.3 * s.size ? 0.35 * s.size : 0;
         for (const Point& q : points) {
           const Vec3d r = q.x - x;
           if (r.squaredNorm() < hold * hold) continue;
-          sum += bem_.kelvin().displacement(r) * q.f;
+          sum += bem_.kelvin().displacement(r, q.f);
         }
       }
       out.middleRows<3>(3 * Eigen::Index(i)) += sum;
@@ -122,14 +113,13 @@ class NearSource {
   }
 
  private:
-  [[nodiscard]] Mat3<double> traction(const SolveMesh::Node& s, const Vec3d& x, const Vec3d& normal) const {
+  [[nodiscard]] Mat3<double> traction(const TouchNode& s, const Vec3d& x, const Vec3d& normal) const {
     return point_load_traction(Vec3d(x - s.source), Vec3d(-s.normal), normal, nu_);
   }
 
   // Adds to t_near's own values what its bend b between the ends of each edge leaves out: int phi 4 phi_c phi_d b dS, by the lumped
   // mass of the triangles that are not close. (A consistent mass changes nothing.)
-  void raise_to_integrals(const SolveMesh::Node& s, const std::vector<Close>& close,
-                          Eigen::Ref<Matrix> out) const {
+  void raise_to_integrals(const TouchNode& s, const std::vector<Close>& close, Eigen::Ref<Matrix> out) const {
     const SolveMesh& m = bem_.mesh();
     Matrix missing = Matrix::Zero(out.rows(), 3);
     std::vector<double> mass(m.nodes.size(), 0);
@@ -170,8 +160,8 @@ class NearSource {
 namespace detail {
 /// u_near at vertex v of a unit force along axis l at a node, mu = 1 [1/m]. At the node's own vertex the mean over a disc of
 /// half the edge length.
-[[nodiscard]] inline Vec3d near_at_vertex(const SolveMesh& m, const SolveMesh::Node& node, std::uint32_t v,
-                                          int l, double nu) {
+[[nodiscard]] inline Vec3d near_at_vertex(const SolveMesh& m, const TouchNode& node, std::uint32_t v, int l,
+                                          double nu) {
   const Vec3d r = m.vertices[v] - node.source, e = Vec3d::Unit(l);
   const bool own = r.norm() < 0.3 * node.size;
   const Vec3d u = own ? disc_load(r, -node.normal, 0, 0.5 * node.size, e, nu)
@@ -180,21 +170,19 @@ namespace detail {
 }
 }  // namespace detail
 
-/// Solves for every touchable node: those with a free triangle. `bem` must be factorised.
-[[nodiscard]] inline ResponseColumns solve_columns(const BoundaryElements& bem, double nu) {
+/// w for unit forces at `nodes`, mu = 1: column 3 j + l is the field of direction l at node j; row 3 v + i is component i at
+/// vertex v [1/m]. `bem` must be factorised.
+[[nodiscard]] inline detail::Matrix solve_columns(const BoundaryElements& bem, double nu,
+                                                  std::span<const TouchNode> nodes) {
   using detail::Matrix;
   const SolveMesh& m = bem.mesh();
-  ResponseColumns out;
-  std::vector<std::uint8_t> free_node(m.nodes.size(), 0);
-  for (std::size_t t = 0; t < m.triangles.size(); ++t)
-    if (!m.fixed_triangle[t])
-      for (auto k : m.nodes_of[t]) free_node[k] = 1;
-  for (std::uint32_t k = 0; k < m.nodes.size(); ++k)
-    if (free_node[k]) out.touchable.push_back(k);
-  const Eigen::Index n3 = 3 * Eigen::Index(m.vertices.size()), count = Eigen::Index(out.touchable.size());
-  out.w.resize(n3, 3 * count);
+  const Eigen::Index n3 = 3 * Eigen::Index(m.vertices.size()), count = Eigen::Index(nodes.size());
+  Matrix w(n3, 3 * count);
   const detail::NearSource source(bem, nu);
-  constexpr Eigen::Index block = 16;
+  const auto hold = [&](Eigen::Ref<Matrix> out, Eigen::Index row, std::uint32_t v, const TouchNode& node) {
+    for (int l = 0; l < 3; ++l) out.block<3, 1>(row, l) = detail::near_at_vertex(m, node, v, l, nu);
+  };
+  constexpr Eigen::Index block = 64;
   const Eigen::Index blocks = (count + block - 1) / block;
   detail::parallel_for(static_cast<std::size_t>(blocks), bem.threads(), [&](std::size_t b) {
     const Eigen::Index first = Eigen::Index(b) * block, size = (std::min)(block, count - first);
@@ -202,34 +190,27 @@ namespace detail {
         held(3 * Eigen::Index(bem.fixed().size()), 3 * size);
     std::vector<std::vector<detail::NearSource::Close>> close;
     for (Eigen::Index j = 0; j < size; ++j) {
-      const std::uint32_t k = out.touchable[std::size_t(first + j)];
-      const SolveMesh::Node& s = m.nodes[k];
-      close.push_back(source.close(k));
-      source.nodal(k, close.back(), traction.middleCols<3>(3 * j));
-      for (std::size_t f = 0; f < bem.fixed().size(); ++f) {
-        const std::uint32_t v = bem.fixed()[f];
-        for (int l = 0; l < 3; ++l)
-          held.block<3, 1>(3 * Eigen::Index(f), 3 * j + l) = detail::near_at_vertex(m, s, v, l, nu);
-      }
+      const TouchNode& s = nodes[std::size_t(first + j)];
+      close.push_back(source.close(s));
+      source.nodal(s, close.back(), traction.middleCols<3>(3 * j));
+      for (std::size_t f = 0; f < bem.fixed().size(); ++f)
+        hold(held.middleCols<3>(3 * j), 3 * Eigen::Index(f), bem.fixed()[f], s);
     }
-    auto columns = out.w.middleCols(3 * first, 3 * size);
+    auto columns = w.middleCols(3 * first, 3 * size);
     columns.noalias() = bem.H_fixed() * held;
     columns.noalias() -= bem.G() * traction;
     for (Eigen::Index j = 0; j < size; ++j)
-      source.remainder(out.touchable[std::size_t(first + j)], close[std::size_t(j)],
-                       traction.middleCols<3>(3 * j), columns.middleCols<3>(3 * j));
+      source.remainder(nodes[std::size_t(first + j)], close[std::size_t(j)], traction.middleCols<3>(3 * j),
+                       columns.middleCols<3>(3 * j));
   });
-  bem.solve(out.w);
+  bem.solve(w);
   // The fixed vertices' rows hold tractions: there w = -u_near.
-  for (std::size_t f = 0; f < bem.fixed().size(); ++f) {
-    const std::uint32_t v = bem.fixed()[f];
+  for (auto v : bem.fixed())
     for (Eigen::Index j = 0; j < count; ++j) {
-      const SolveMesh::Node& s = m.nodes[out.touchable[std::size_t(j)]];
-      for (int l = 0; l < 3; ++l)
-        out.w.block<3, 1>(3 * Eigen::Index(v), 3 * j + l) = -detail::near_at_vertex(m, s, v, l, nu);
+      hold(w.middleCols<3>(3 * j), 3 * Eigen::Index(v), v, nodes[std::size_t(j)]);
+      w.block<3, 3>(3 * Eigen::Index(v), 3 * j) *= -1;
     }
-  }
-  return out;
+  return w;
 }
 
 }  // namespace palpate

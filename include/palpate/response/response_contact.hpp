@@ -142,8 +142,8 @@ class ResponseTick {
         }
         sum += f[0] * column(node, 0) + f[1] * column(node, 1) + f[2] * column(node, 2);
       }
-      if (k.dipole != 0) add_second(k);
       for (auto node : patch_) weight_[node] = 0;
+      if (k.dipole != 0) add_second(k);
       detail::ContactNear& near = near_field_[c] = contact_.near_of(k);
       if (carried < 1) near.scale(static_cast<float>(carried));
       float* own = &near_[c * 3 * n];
@@ -193,10 +193,10 @@ class ResponseTick {
     const auto n = static_cast<Eigen::Index>(field_->stride()), size = 3 * n;
     Eigen::Map<Eigen::ArrayXf> second(second_.data(), size);
     second.setZero();
-    for (auto node : patch_) {
-      const Vec3<float> g =
-          weight_[node] * detail::loads_of_node(*field_, node, c.dipole, c.tilt).template cast<float>();
-      const auto column = [&](std::size_t l) { return Row(field_->column(node, l), size); };
+    for (const detail::PatchWeight& at : c.nodes) {
+      const Vec3<float> g = (c.share * at.weight * detail::loads_of_node(*field_, at.node, c.dipole, c.tilt))
+                                .template cast<float>();
+      const auto column = [&](std::size_t l) { return Row(field_->column(at.node, l), size); };
       if (c.tilt.squaredNorm() > 0)
         second += g[0] * column(3) + g[1] * column(4) + g[2] * column(5);
       else

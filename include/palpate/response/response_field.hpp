@@ -10,7 +10,8 @@
 /// | nu     | Poisson's ratio               | -    | [0, 1/2]; 1/2 is exact, nothing locks   |
 /// | n      | vertices of the solve mesh    | -    | [20, 5000]; error about 1/n             |
 ///
-/// Memory: 72 n n_free bytes for the columns (n = 600: 25 MB), see `memory()`; during set-up about 250 n^2 bytes more.
+/// Memory: 72 n m bytes for the columns, m the places of loads (load_places.hpp): with n = 600 29 MB for a smooth body, 80 to
+/// 95 MB for one that is all next to its edges, as a block; see `memory()`. During set-up about twice that and 150 n^2 bytes more.
 /// Set-up: O(n^3), seconds. Several pieces are allowed, each held somewhere.
 /// Limits: small strain per unit load; parts thinner than an edge of the solve mesh bend too little: `unresolved_area()`.
 /// Reports (error.hpp) bad E, nu, mesh or fixed region. Source: [brebbia1984], [james1999].
@@ -25,7 +26,7 @@ namespace palpate {
 struct ResponseParts {
   double E = 0, nu = 0;
   SolveMesh mesh;                                       ///< without nodes_of, middle and nodes
-  std::vector<SolveMesh::Node> nodes;                   ///< of the touch mesh
+  std::vector<TouchNode> nodes;                         ///< of the touch mesh
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< between them
   std::vector<std::uint32_t> share_begin;               ///< see TouchMesh
   std::vector<TouchMesh::Share> shares;
@@ -134,10 +135,17 @@ class ResponseField {
   [[nodiscard]] const float* column(std::size_t k, std::size_t l) const noexcept {
     return &columns_[(loads * k + l) * 3 * stride_];
   }
-  /// The same at the vertex of node i.
+  /// The same at the place of node i.
   [[nodiscard]] Vec3<double> at(std::size_t i, std::size_t k, std::size_t l) const noexcept {
-    const float* c = column(k, l) + touch_.nodes()[i].vertex;
-    return {double(c[0]), double(c[stride_]), double(c[2 * stride_])};
+    const TouchNode& node = touch_.nodes()[i];
+    const float* const c = column(k, l);
+    Vec3<float> w = Vec3<float>::Zero();
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (node.part[Eigen::Index(j)] == 0) continue;
+      const float* const at = c + mesh_.triangles[node.triangle][j];
+      w += node.part[Eigen::Index(j)] * Vec3<float>(at[0], at[stride_], at[2 * stride_]);
+    }
+    return w.template cast<double>();
   }
   /// The solve mesh's vertices by coordinate, padded; 1 where free, 0 where fixed.
   [[nodiscard]] const float* coordinate(int axis) const noexcept {
@@ -171,33 +179,34 @@ class ResponseField {
     report(0.3);
     bem.factorise();
     report(0.45);
-    const ResponseColumns columns = solve_columns(bem, nu_);
+    const detail::LoadPlaces places(bem.mesh());
+    touch_ = places.touch_mesh();
+    const detail::Matrix w = solve_columns(bem, nu_, std::span(touch_.nodes()).first(touch_.solved()));
     report(0.9);
-    for (Eigen::Index c = 0; c < columns.w.cols(); ++c)
-      for (Eigen::Index r = 0; r < columns.w.rows(); ++r)
-        if (!is_finite(columns.w(r, c)))
+    for (Eigen::Index c = 0; c < w.cols(); ++c)
+      for (Eigen::Index r = 0; r < w.rows(); ++r)
+        if (!is_finite(w(r, c)))
           fail("ResponseField",
                "the boundary equation has no finite solution: is the mesh closed, without triangles that "
                "fold over?");
     mesh_ = bem.mesh();
     bends_ = BendTable(mesh_, bem.bend());
-    touch_ = TouchMesh(mesh_);
     stride_ = padded(mesh_.vertices.size());
     columns_.resize(loads * 3 * stride_ * touch_.nodes().size(), 0.f);
-    for (std::uint32_t k = 0; k < touch_.solved_or_held(); ++k)
+    for (std::uint32_t k = 0; k < places.solved_or_held(); ++k)
       for (std::size_t l = 0; l < 3; ++l) {
         float* out = &columns_[(loads * k + l) * 3 * stride_];
         for (std::uint32_t v = 0; v < mesh_.vertices.size(); ++v) {
-          const Vec3<double> w =
+          const Vec3<double> u =
               k < touch_.solved()
-                  ? Vec3<double>(columns.w.block<3, 1>(Eigen::Index(3 * v), Eigen::Index(3 * k + l)))
+                  ? Vec3<double>(w.block<3, 1>(Eigen::Index(3 * v), Eigen::Index(3 * k + l)))
                   : Vec3<double>(-detail::near_at_vertex(mesh_, touch_.nodes()[k], v, int(l), nu_));
-          for (std::size_t i = 0; i < 3; ++i) out[i * stride_ + v] = static_cast<float>(w[Eigen::Index(i)]);
+          for (std::size_t i = 0; i < 3; ++i) out[i * stride_ + v] = static_cast<float>(u[Eigen::Index(i)]);
         }
       }
-    detail::parallel_for(touch_.solved_or_held(), params.threads, [this](std::size_t k) { derive(k); });
-    for (std::size_t k = touch_.solved_or_held(); k < touch_.nodes().size(); ++k) join(k);
-    table_ = PatchTable(mesh_, touch_, params.threads, stride_,
+    detail::parallel_for(places.solved_or_held(), params.threads, [&](std::size_t k) { derive(places, k); });
+    for (std::size_t k = places.solved_or_held(); k < touch_.nodes().size(); ++k) join(places, k);
+    table_ = PatchTable(mesh_, bends_, touch_, params.threads, stride_,
                         [this](std::size_t k, std::size_t l) { return column(k, l); });
     columns_.resize(loads * 3 * stride_ * touch_.solved());
     columns_.shrink_to_fit();
@@ -206,13 +215,13 @@ class ResponseField {
   }
 
   // Double force and tilts: derivatives of the forces' fields by their place.
-  void derive(std::size_t k) {
+  void derive(const detail::LoadPlaces& places, std::size_t k) {
     using Row = Eigen::Map<const Eigen::ArrayXf>;
     const auto size = static_cast<Eigen::Index>(3 * stride_);
     const Vec3<double> m = -touch_.nodes()[k].normal, t1 = perpendicular(Vec3<double>(-m)), t2 = t1.cross(m);
     for (std::size_t l = 3; l < loads; ++l) {
       Eigen::Map<Eigen::ArrayXf> sum(&columns_[(loads * k + l) * 3 * stride_], size);
-      for (const TouchMesh::Weight& w : touch_.gradient(k)) {
+      for (const auto& w : places.gradient(k)) {
         const Vec3<double> f = l == 3 ? Vec3<double>(0.5 * w.g) : Vec3<double>(w.g.dot(l == 4 ? t1 : t2) * m);
         for (int i = 0; i < 3; ++i)
           sum += static_cast<float>(f[i]) * Row(column(w.node, std::size_t(i)), size);
@@ -221,15 +230,15 @@ class ResponseField {
   }
 
   // An edge's node: the mean of its parts' loads.
-  void join(std::size_t k) {
+  void join(const detail::LoadPlaces& places, std::size_t k) {
     using Row = Eigen::Map<const Eigen::ArrayXf>;
     const auto size = static_cast<Eigen::Index>(3 * stride_);
-    const float share = 1.f / static_cast<float>(touch_.parts(k).size());
+    const float share = 1.f / static_cast<float>(places.parts(k).size());
     const Vec3<double> n = touch_.nodes()[k].normal, t1 = perpendicular(n), t2 = n.cross(t1);
     const auto sum = [&](std::size_t l) {
       return Eigen::Map<Eigen::ArrayXf>(&columns_[(loads * k + l) * 3 * stride_], size);
     };
-    for (auto part : touch_.parts(k)) {
+    for (auto part : places.parts(k)) {
       for (std::size_t l = 0; l < 4; ++l) sum(l) += share * Row(column(part, l), size);
       const Vec3<double> pn = touch_.nodes()[part].normal, p1 = perpendicular(pn), p2 = pn.cross(p1);
       sum(4) += share * (static_cast<float>(t1.dot(p1)) * Row(column(part, 4), size) +

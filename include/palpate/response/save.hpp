@@ -25,7 +25,7 @@
 
 namespace palpate {
 
-inline constexpr std::uint32_t saved_field_version = 4;
+inline constexpr std::uint32_t saved_field_version = 5;
 
 namespace detail {
 
@@ -50,9 +50,10 @@ namespace detail {
 
 inline constexpr std::size_t saved_head = 32;
 
-struct SavedNode {  // SolveMesh::Node without padding
-  double normal[3], source[3], size;
-  std::uint32_t vertex, crease;
+struct SavedNode {  // TouchNode without padding
+  double normal[3], source[3], size, spacing;
+  float part[3];
+  std::uint32_t triangle, crease, unused;
 };
 
 class ByteWriter {
@@ -126,8 +127,11 @@ class ByteReader {
     nodes.push_back({{n.normal.x(), n.normal.y(), n.normal.z()},
                      {n.source.x(), n.source.y(), n.source.z()},
                      n.size,
-                     n.vertex,
-                     n.crease ? 1u : 0u});
+                     n.spacing,
+                     {n.part.x(), n.part.y(), n.part.z()},
+                     n.triangle,
+                     n.crease ? 1u : 0u,
+                     0});
   body.put_list(nodes);
   body.put_list(parts.triangles);
   body.put_list(parts.share_begin);
@@ -166,7 +170,8 @@ class ByteReader {
   std::memcpy(&size, bytes.data() + 16, 8);
   std::memcpy(&sum, bytes.data() + 24, 8);
   if (order != 0x01020304) fail(where, "saved on a machine with the other byte order");
-  if (version != saved_field_version) fail(where, "the format's version is not the one this library reads", version);
+  if (version != saved_field_version)
+    fail(where, "the format's version is not the one this library reads", version);
   const std::span<const std::byte> content = bytes.subspan(detail::saved_head);
   if (content.size() != size)
     fail(where, "cut short or too long: bytes missing (more than there should be: < 0)",
@@ -243,14 +248,16 @@ class ByteReader {
     require(is_finite(parts.mesh.vertices.back()), "a vertex is not finite");
   }
   for (const auto& s : nodes) {
-    SolveMesh::Node node{s.vertex,
-                         {s.normal[0], s.normal[1], s.normal[2]},
+    const TouchNode node{{s.normal[0], s.normal[1], s.normal[2]},
                          {s.source[0], s.source[1], s.source[2]},
                          s.size,
-                         0,
+                         s.spacing,
+                         s.triangle,
+                         {s.part[0], s.part[1], s.part[2]},
                          s.crease != 0};
-    require(s.vertex < n && is_finite(node.normal) && is_finite(node.source) && is_finite(s.size),
-            "a node is not a vertex's");
+    require(s.triangle < parts.mesh.triangles.size() && is_finite(node.normal) && is_finite(node.source) &&
+                is_finite(s.size) && is_finite(s.spacing) && is_finite(node.part.sum()),
+            "a node is not a triangle's");
     parts.nodes.push_back(node);
   }
   for (float c : parts.columns) require(is_finite(c), "a column is not finite");

@@ -20,7 +20,6 @@ struct SolveMesh {
     Vec3<double> normal;     ///< outward, unit
     Vec3<double> source;     ///< where a load of this node acts: the vertex, drawn inwards from a crease
     double size;             ///< mean length of the edges around
-    std::uint32_t triangle;  ///< one of the node's triangles, holding `source`
     bool crease;             ///< the vertex has other nodes
   };
   std::vector<Vec3<double>> vertices;
@@ -158,7 +157,7 @@ inline void require_each_piece_held(const MeshData<double>& mesh, const std::vec
   m.nodes.resize(count);
   std::vector<std::uint32_t> parts(m.vertices.size(), 0);
   std::vector<double> weight(count, 0);
-  for (auto& n : m.nodes) n = {~0u, Vec3d::Zero(), Vec3d::Zero(), 0, 0, false};
+  for (auto& n : m.nodes) n = {~0u, Vec3d::Zero(), Vec3d::Zero(), 0, false};
   m.nodes_of.resize(m.triangles.size());
   for (std::uint32_t t = 0; t < m.triangles.size(); ++t) {
     for (std::uint32_t c = 0; c < 3; ++c) {
@@ -167,7 +166,6 @@ inline void require_each_piece_held(const MeshData<double>& mesh, const std::vec
       SolveMesh::Node& node = m.nodes[k];
       if (node.vertex == ~0u) ++parts[v];
       node.vertex = v;
-      node.triangle = t;
       node.normal += on_crease[v] ? corner_normal(t, c) : surface.normal_at(m.vertices[v]);
       const Vec3d e1 = m.vertices[m.triangles[t][(c + 1) % 3]] - m.vertices[v], e2 = m.vertices[m.triangles[t][(c + 2) % 3]] - m.vertices[v];
       node.size += e1.norm() + e2.norm();
