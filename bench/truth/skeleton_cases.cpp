@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Runs one reference case through the beam skeleton and writes the displacements that compare.py reads.
+/// @file  Runs one reference case through the beam skeleton and writes the displacements that judge_case reads, beside the case's own force.csv.
 ///
 ///     skeleton_cases CASE_DIR displacement.csv linear|phong
 ///

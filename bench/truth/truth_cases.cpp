@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Runs one reference case through the response field and writes what compare.py reads.
+/// @file  Runs one reference case through the response field and writes what judge_case reads.
 ///
 ///     truth_cases CASE_DIR displacement.csv force.csv [vertices [linear]]
 ///

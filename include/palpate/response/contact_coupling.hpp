@@ -32,11 +32,13 @@ struct PlacedContact {
   PatchTable::Level level;  ///< of the radius
   Mat3<double> w, C, S;     ///< correction, sum, times mu; the sum's inverse
   Vec3<double> rhs;
-  Vec3<double> P = Vec3<double>::Zero();      ///< force / mu
-  Vec3<double> extra = Vec3<double>::Zero();  ///< force / mu that the tool feels and the field does not
-  double dipole = 0, dn2 = 0;                 ///< / mu
-  Vec3<double> tilt = Vec3<double>::Zero();   ///< / mu
-  Vec3<double> turn = Vec3<double>::Zero();   ///< its part of second order
+  Vec3<double> P = Vec3<double>::Zero();        ///< force / mu
+  Vec3<double> extra = Vec3<double>::Zero();    ///< force / mu that the tool feels and the field does not
+  double dipole = 0;                            ///< / mu
+  double dn2 = 0, beta = 0;                     ///< delta_n d_n, delta_n / a, as the near terms take them
+  Vec3<double> delta_t = Vec3<double>::Zero();  ///< likewise
+  Vec3<double> tilt = Vec3<double>::Zero();     ///< / mu
+  Vec3<double> turn = Vec3<double>::Zero();     ///< its part of second order
   Vec3<double> push = Vec3<double>::Zero();
   double sag = 0;                  ///< how deep the patch's edge lies below its plane, at most
   PatchMoments moments;            ///< of a wide patch

@@ -75,12 +75,12 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
   const double nu = field.nu(), stuck = stuck_load(c.a, nu);
   const DiscCompliance near = disc_compliance(c.a, nu);
   const Vec3<double> t1 = c.t1(), t2 = c.t2();
-  // The local terms take no force above the half-space's for d: where the body is far stiffer, they have nothing to say. The double
-  // force, which is met far away, takes twice as much.
+  // The universal forces take no force above the half-space's for d: where the body is far stiffer, they have nothing to say. The
+  // double force and what is drawn near the patch take twice as much.
   const double normal = c.P.dot(c.m);
   const Vec3<double> indentation = near.along * c.P + (near.normal - near.along) * normal * c.m;
   const double most = c.d.norm(), length = indentation.norm();
-  const double local = length > most ? most / length : 1;
+  const double local = length > most ? most / length : 1, twice = (std::min)(2 * local, 1.0);
   const Vec3<double> P = local * c.P;
   const double pushed = P.dot(c.m);
   const Vec3<double> dragged = P - pushed * c.m;
@@ -104,8 +104,10 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
   if (second_order == nullptr) return;
   const SecondOrder& k = *second_order;
   const double depth = std::clamp(c.d.dot(c.m), -2 * c.a, 2 * c.a), indented = near.normal * pushed,
-               dipole = -outward(nu) * (std::min)(2 * local, 1.0) * normal * depth;
-  c.dn2 = indented * depth;
+               dipole = -outward(nu) * twice * normal * depth, delta = near.normal * twice * normal;
+  c.dn2 = delta * depth;
+  c.beta = std::clamp(delta / c.a, 0.0, 2.0);
+  c.delta_t = near.along * twice * tangential(c.P, c.m);
   // By how much the body as a whole gives way, along the normal and the surface.
   const Vec3<double> gone = c.d - near.along * P - (near.normal - near.along) * pushed * c.m,
                      slid = tangential(gone, c.m);
@@ -113,10 +115,11 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
   c.turn = k.turn_slid * pushed * slid - k.turn_sunk * sunk * dragged;
   const double steep = indented / c.a;
   c.push = near.along * near.along * k.drag / (1 + steep * steep) * indented * dragged -
-           near.normal * k.softening * c.dn2 * c.m;
+           near.normal * k.softening * indented * depth * c.m;
   const Vec3<double> answer = moved.by(dipole, c.turn), second = c.push - answer;
   const double share = kept(moved.size(answer, dipole, c.turn) + c.push.norm(), c) * kept_of_force(second, c);
   c.dn2 *= share;
+  c.delta_t *= share;
   c.turn *= share;
   c.push *= share;
   c.dipole += share * dipole;
@@ -129,8 +132,8 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
   const Vec3<double> stiffer = 2 * outward(nu) * indented * moved.radial.dot(P) * c.m -
                                k.lever * (slid.dot(leaning) * c.m + pushed * (c.w * leaning) -
                                           sunk * leaning - dragged.dot(leaning) * (c.w * c.m));
-  const Vec3<double> twice = 2 * stiffer;  // so that it is at most a quarter of d, and of the force
-  c.extra = c.S * (kept(twice.norm(), c) * kept_of_force(twice, c) * stiffer);
+  const Vec3<double> doubled = 2 * stiffer;  // so that it is at most a quarter of d, and of the force
+  c.extra = c.S * (kept(doubled.norm(), c) * kept_of_force(doubled, c) * stiffer);
 }
 
 }  // namespace palpate::detail

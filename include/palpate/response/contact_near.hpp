@@ -7,9 +7,11 @@
 /// below the tangent plane: for a quadric z (a/r)^2, so depth = z (1 - (a/r)^2), which vanishes at the edge. The edge is at
 /// most `sag` deep: the side of a block is below its top by all of z.
 ///
-/// Second order in depth d_n, s = max(r/a, 1): u = q_r p/(a s) + q_n m,
-///     q_r = k_r (d_n delta_n/a) asin(1/s) / (s sqrt(s^2 - 1 + e^2)),   q_n = k_n (d_n delta_n/a) s^-5 sqrt(1 - s^-2)
-/// e is such that all terms of second order add up to nothing at the patch's edge; they do so within, too.
+/// Second order in depth and more, s = max(r/a, 1), beta = delta_n/a, e_p = p/r: u = q_r e_p + q_n m + q_t e_p,
+///     q_r = (d_n delta_n/a) (k_r asin(1/s) / (s sqrt(s^2 - 1 + e^2)) + sqrt(1 - s^-2) (r_4 s^-4 + r_6 s^-6))
+///     q_n = (d_n delta_n/a) sqrt(1 - s^-2) (n_4 s^-4 + n_6 s^-6),   q_t = beta^2 (delta_t . e_p) t sqrt(1 - s^-2) s^-3
+/// r_4 to n_6 and t are linear in beta (DeepFactor); beta is held at 2, for q_t at 1. e is such that all terms add up to nothing at the
+/// patch's edge; they do so within, too.
 
 #include <palpate/response/near_field.hpp>
 
@@ -29,16 +31,18 @@ struct Axes {
 using Lane3 = Axes<Lane>;
 
 struct ContactNear {
-  Vec3<float> place, m;        ///< m: unit normal into the body
-  Vec3<float> along;           ///< tangential part of the force / (4 pi mu)
-  Vec3<float> tilt;            ///< moment of tilt / (4 pi mu)
-  Vec3<float> turn;            ///< slope at the patch's edge that is taken back outside, times s^-7
-  Mat3<float> shear;           ///< in the patch's plane / (4 pi mu)
-  Vec3<float> push;            ///< taken back outside the patch, times s^-8
-  float normal = 0;            ///< normal part of the force / (4 pi mu)
-  float dipole = 0;            ///< radial double force / (4 pi mu)
-  float radial = 0, sink = 0;  ///< k_r d_n^2 / a, k_n d_n^2 / a
-  float rim2 = 1;              ///< e^2
+  Vec3<float> place, m;  ///< m: unit normal into the body
+  Vec3<float> along;     ///< tangential part of the force / (4 pi mu)
+  Vec3<float> tilt;      ///< moment of tilt / (4 pi mu)
+  Vec3<float> turn;      ///< slope at the patch's edge that is taken back outside, times s^-7
+  Mat3<float> shear;     ///< in the patch's plane / (4 pi mu)
+  Vec3<float> push;      ///< taken back outside the patch, times s^-8
+  float normal = 0;      ///< normal part of the force / (4 pi mu)
+  float dipole = 0;      ///< radial double force / (4 pi mu)
+  float radial = 0;      ///< k_r d_n delta_n / a; so are the next four
+  float radial_4 = 0, radial_6 = 0, normal_4 = 0, normal_6 = 0;
+  Vec3<float> slide = Vec3<float>::Zero();  ///< t beta^2 delta_t
+  float rim2 = 1;                           ///< e^2
   float a = 1, nu = 0.5f;
   float sag = 0;         ///< how deep the patch's edge lies below its plane, at most
   bool second = false;   ///< any load beside the force
@@ -53,7 +57,9 @@ struct ContactNear {
     turn *= share;
     shear *= share;
     push *= share;
-    for (float* part : {&normal, &dipole, &radial, &sink}) *part *= share;
+    slide *= share;
+    for (float* part : {&normal, &dipole, &radial, &radial_4, &radial_6, &normal_4, &normal_6})
+      *part *= share;
   }
   template <class V>
   [[nodiscard]] PALPATE_INLINE Axes<V> operator()(const Axes<V>& at) const noexcept {
@@ -79,10 +85,13 @@ struct ContactNear {
       // q_r / (a s): asin(1/s) / (s sqrt(s^2 - 1 + e^2)), with the roots of 1/s^2 instead.
       const V q_r = (radial / a) * arc_sine(inverse) * near2 * inverse /
                     root(larger(beyond + rim2 * near2, splat<V>(1e-12f)));
-      in_plane += dipole * d.in_plane + q_r;
-      const V back = near2 * near2 * near2 * near2;
+      const V near4 = near2 * near2, falling = near4 * root(beyond),
+              slid = px * slide.x() + py * slide.y() + pz * slide.z();
+      in_plane += dipole * d.in_plane + q_r +
+                  inverse * falling * ((radial_4 + radial_6 * near2) / a + slid / (a * a));
+      const V back = near4 * near4;
       turned_back = back * inverse;
-      down += dipole * d.normal + sink * near2 * near2 * inverse * root(beyond);
+      down += dipole * d.normal + falling * (normal_4 + normal_6 * near2);
       out.x -= back * push.x();
       out.y -= back * push.y();
       out.z -= back * push.z();

@@ -67,7 +67,8 @@ class ContactSystem {
   }
 
   void locate(Contact& c) const noexcept {
-    c.dipole = c.dn2 = 0;
+    c.dipole = c.dn2 = c.beta = 0;
+    c.delta_t.setZero();
     c.tilt.setZero();
     c.turn.setZero();
     c.push.setZero();
@@ -178,8 +179,17 @@ class ContactSystem {
     near.turn = (0.375 * (1 - nu) / (c.a * c.a * c.a) * c.turn).template cast<float>();
     near.push = c.push.template cast<float>();
     near.dipole = static_cast<float>(scale * dipole);
-    near.radial = static_cast<float>(settings_.constants.radial * c.dn2 / c.a);
-    near.sink = static_cast<float>(settings_.constants.sink * c.dn2 / c.a);
+    const SecondOrder& k = settings_.constants;
+    const auto deep = [&c](const DeepFactor& factor) {
+      return static_cast<float>(factor.at(c.beta) * c.dn2 / c.a);
+    };
+    near.radial = static_cast<float>(k.radial * c.dn2 / c.a);
+    near.radial_4 = deep(k.radial_4);
+    near.radial_6 = deep(k.radial_6);
+    near.normal_4 = deep(k.normal_4);
+    near.normal_6 = deep(k.normal_6);
+    const double known = (std::min)(c.beta, 1.0);
+    near.slide = (k.slide.at(known) * known * known * c.delta_t).template cast<float>();
     near.rim2 = static_cast<float>(rim * rim);
     near.a = static_cast<float>(c.a);
     near.sag = static_cast<float>(c.sag);

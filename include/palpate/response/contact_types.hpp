@@ -38,15 +38,24 @@ struct SphereContact {
   S depth = S(0);                     ///< [m]; <= 0: no contact
 };
 
-/// Constants of second order in depth, for a stuck patch on neo-Hookean rubber; depth <= 2 a. They are those of nu = 1/2;
-/// `at(nu)` is what is used, below 0.3 that of 0.3. Fitted at nu = 0.49 on pushes into a cube, a block, a wall and two ellipsoids, their
-/// change with nu on one normal and one skew push at 0.3, rounded, used for every body (docs/accuracy.md).
+/// A factor that changes with depth, by `deep` from beta = 0 to 1; beta = delta_n / a, 0 to 2.
+struct DeepFactor {
+  double shallow = 0, deep = 0;
+  [[nodiscard]] double at(double beta) const noexcept { return shallow + deep * beta; }
+};
+
+/// Constants of second order in depth and more, for a stuck patch on neo-Hookean rubber; depth <= 2 a. They are those of nu = 1/2;
+/// `at(nu)` is what is used, below 0.3 that of 0.3. What is drawn near the patch (DeepFactor, contact_near.hpp) was fitted at nu = 0.49 on
+/// finite elements of a half-space alone, pressed normally and askew; the rest on pushes into a cube, a block, a wall and two ellipsoids, its
+/// change with nu on one normal and one skew push at 0.3. Rounded, used for every body (docs/accuracy.md).
 /// delta_n, delta_t: local indentation, the displacement of a half-space by the same force, normal and tangential; w_n, w_t: the rest,
 /// by which the body as a whole gives way; s: slope of w_n under the patch. Without constants: the radial double force
 /// -nu / (1 - nu) F_n d_n, F_n at most twice the half-space's, and the force by which a body that spreads under the patch stiffens.
 struct SecondOrder {
-  double radial = 0.19;    ///< near term along the surface, times delta_n d_n / a; times (2 nu)^3
-  double sink = 0.36;      ///< near term along the normal, likewise; the same for every nu
+  double radial = 0.19;  ///< near term along the surface, times delta_n d_n / a; times (2 nu)^3
+  DeepFactor radial_4{-0.39, 0.14}, radial_6{0.14, 0.11};  ///< likewise, times s^-4 and s^-6; times 1 - 2.5 b
+  DeepFactor normal_4{-0.09, 0.42}, normal_6{0.66, -0.65};  ///< along the normal; the same for every nu
+  DeepFactor slide{-0.65, 0.2};  ///< times beta^2 delta_t, beta held at 1; times 1 - 2.5 b
   double turn_slid = 0.4;  ///< moment of tilt turn_slid F_n w_t - turn_sunk F_t w_n; the same for every nu
   double turn_sunk = 0.6;
   double lever =
@@ -57,8 +66,16 @@ struct SecondOrder {
 
   [[nodiscard]] SecondOrder at(double nu) const noexcept {
     const double held = nu > 0.3 ? nu : 0.3, b = 1 - 2 * held;
-    return {8 * held * held * held * radial, sink, turn_slid, turn_sunk, lever, (1 + 1.3 * b) * drag,
-            (1 - 2.5 * b) * softening};
+    const double less = 1 - 2.5 * b;
+    const auto lessened = [less](const DeepFactor& k) { return DeepFactor{less * k.shallow, less * k.deep}; };
+    SecondOrder out = *this;
+    out.radial *= 8 * held * held * held;
+    out.radial_4 = lessened(radial_4);
+    out.radial_6 = lessened(radial_6);
+    out.slide = lessened(slide);
+    out.drag *= 1 + 1.3 * b;
+    out.softening *= less;
+    return out;
   }
 };
 

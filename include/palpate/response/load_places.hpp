@@ -16,6 +16,7 @@
 
 namespace palpate::detail {
 
+/// The touch mesh of a solve mesh, which must outlive it, and what the fields of further loads at set-up are made of.
 class LoadPlaces {
  public:
   /// A weighted node.
@@ -143,26 +144,29 @@ class LoadPlaces {
     std::array<std::uint32_t, 3> corner, middle = middle_[t];
     for (std::size_t c = 0; c < 3; ++c) corner[c] = number_[mesh_.nodes_of[t][c]];
     const auto count = 3 - std::count(middle.begin(), middle.end(), none);
-    for (int turns = 0; turns < 2 && (count == 1 ? middle[0] == none : count == 2 && middle[2] != none);
-         ++turns) {
-      std::rotate(corner.begin(), corner.begin() + 1, corner.end());
-      std::rotate(middle.begin(), middle.begin() + 1, middle.end());
-    }
-    if (count == 0) {
-      add(corner[0], corner[1], corner[2]);
-    } else if (count == 1) {
-      add(corner[0], middle[0], corner[2]);
-      add(middle[0], corner[1], corner[2]);
-    } else {
-      add(middle[0], corner[1], middle[1]);
-      if (count == 2) {
+    if (count == 1 || count == 2)  // the first edge is cut, the last is not
+      while (middle[0] == none || middle[2] != none) {
+        std::rotate(corner.begin(), corner.begin() + 1, corner.end());
+        std::rotate(middle.begin(), middle.begin() + 1, middle.end());
+      }
+    switch (count) {
+      case 0:
+        add(corner[0], corner[1], corner[2]);
+        break;
+      case 1:
+        add(corner[0], middle[0], corner[2]);
+        add(middle[0], corner[1], corner[2]);
+        break;
+      case 2:
+        add(middle[0], corner[1], middle[1]);
         add(corner[0], middle[0], middle[1]);
         add(corner[0], middle[1], corner[2]);
-      } else {
+        break;
+      default:
         add(corner[0], middle[0], middle[2]);
+        add(middle[0], corner[1], middle[1]);
         add(middle[2], middle[1], corner[2]);
         add(middle[0], middle[1], middle[2]);
-      }
     }
     whole_.resize(triangles_.size(), t);
   }

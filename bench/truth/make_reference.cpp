@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: MIT
+
+/// @file  Makes a reference case by finite elements: the bodies of docs/accuracy.md. `references.sh` calls it.
+///
+///     make_reference NAME CASE_DIR fineness     without arguments: the names
+///
+/// Stuck flat patches on rubber, pressed by their depth. Needs gmsh as a command. Writes what truth_cases reads into CASE_DIR:
+/// meta.json, surface.obj, vertices.csv, displacement.csv, displacement_linear.csv (small strain), force.csv, force_linear.csv.
+/// Vertices: the elements' nodes on the surface. fineness: patch radius over edges at its rim.
+
+#include "truth/rubber.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+
+namespace {
+
+using namespace bench;
+
+struct Case {
+  const char* name;
+  Body body;
+  double E, nu;  // [MPa], -
+  std::vector<Patch> patches;
+  std::vector<double> depths;  // [mm]
+};
+
+// `lean` degrees off the normal, towards `aside`.
+V leaning(const V& normal, const V& aside, double lean) {
+  const double angle = lean * std::acos(-1.0) / 180;
+  return -std::cos(angle) * normal + std::sin(angle) * aside;
+}
+Patch on_top(double x, double y, double z, double radius, double lean = 0) {
+  return {{x, y, z}, V::UnitY(), leaning(V::UnitY(), V::UnitX(), lean), radius, 1};
+}
+// On an ellipsoid, `angle` degrees (of its parameter) from the top towards x.
+Patch on_flank(const V& axes, double angle, double radius, double lean = 0) {
+  const double t = angle * std::acos(-1.0) / 180;
+  const V place(axes.x() * std::sin(t), axes.y() * std::cos(t), 0);
+  const V normal = place.cwiseQuotient(axes.cwiseProduct(axes)).normalized();
+  return {place, normal, leaning(normal, V(normal.y(), -normal.x(), 0), lean), radius, 1};
+}
+
+std::vector<Case> cases() {
+  const auto box = [](double x, double y, double z, bool half_x = false, bool half_z = true) {
+    return Body{Body::box, {x, y, z}, 0, half_x, half_z};
+  };
+  const Body ellipsoid_t1{Body::ellipsoid, {60, 40, 40}, -36, true, true},
+      a{Body::ellipsoid, {50, 35, 30}, -28, false, true}, A{Body::ellipsoid, {50, 45, 35}, -42, false, true};
+  const V pushed = -V::UnitX();
+  return {
+      {"half_space",
+       box(300, 150, 300, true),
+       1,
+       0.49,
+       {on_top(0, 150, 0, 5)},
+       {0.5, 1, 2, 3, 4, 5, 6, 8, 10}},
+      {"half_space_askew", box(300, 150, 300), 1, 0.49, {on_top(0, 150, 0, 5, 35)}, {0.5, 1, 2, 3, 4, 5}},
+      {"t1", ellipsoid_t1, 1.5, 0.49, {on_top(0, 40, 0, 5)}, {1, 2, 4, 6, 8, 10}},
+      {"t6", box(100, 100, 100, true), 1, 0.49, {on_top(0, 100, 0, 10)}, {1, 2, 4, 8, 12}},
+      {"a", a, 1, 0.49, {on_flank(a.size, 40, 4, 25)}, {1, 2, 4, 6}},
+      {"b", box(80, 50, 60), 1, 0.49, {on_top(8, 50, 0, 20)}, {1, 2, 4, 7, 10}},
+      {"c", box(80, 50, 60), 1, 0.49, {on_top(28, 50, 0, 6)}, {1, 2, 4, 6, 9}},
+      {"i", box(80, 50, 60), 1, 0.49, {on_top(0, 50, 0, 6, 30)}, {1, 2, 4, 6}},
+      {"k", box(120, 30, 100, true), 1, 0.49, {on_top(0, 30, 0, 8)}, {1, 2, 4, 6, 9}},
+      {"i3", box(80, 50, 60), 1, 0.3, {on_top(0, 50, 0, 6, 30)}, {1, 2, 3}},
+      {"m", {Body::cylinder, {30, 50, 30}, 0, false, true}, 1, 0.49, {on_top(19, 50, 0, 6)}, {1, 2, 4, 6, 9}},
+      {"p", {Body::cylinder, {30, 45, 30}, 0, false, true}, 1, 0.49, {on_top(4, 45, 0, 15)}, {1, 2, 4, 6, 9}},
+      {"s", box(100, 40, 80), 1, 0.49, {on_top(40, 40, 0, 5)}, {1, 2, 4, 6}},
+      {"u", box(20, 60, 80), 1, 0.49, {{{10, 40, 0}, V::UnitX(), pushed, 5, 1}}, {1, 2, 4, 6}},
+      {"v3", ellipsoid_t1, 1.5, 0.3, {on_top(0, 40, 0, 5)}, {1, 2, 3, 4}},
+      {"x", box(90, 45, 70), 1, 0.49, {on_top(30, 45, 0, 6, 20)}, {1, 2, 4, 7}},
+      {"Z", box(110, 55, 76), 1, 0.49, {on_top(46.5, 55, 0, 4.5)}, {1, 2, 3.5, 5}},
+      {"S", box(90, 28, 100, true), 1, 0.49, {on_top(0, 28, 0, 5)}, {1, 2, 4, 6}},
+      {"A", A, 1, 0.49, {on_flank(A.size, 50, 6, 30)}, {1, 2, 4, 6, 9}},
+      {"D", box(100, 60, 80), 1, 0.49, {on_top(-20, 60, 0, 6), on_top(22, 60, 0, 8)}, {1, 2, 4, 6, 9}},
+  };
+}
+
+// The surface: nodes of the elements' outer faces, four triangles to a face, mirrored to the whole body.
+struct Surface {
+  std::vector<int> node;  // of each vertex
+  std::vector<V> sign;    // mirrored along an axis: -1
+  std::vector<V> place;   // [mm]
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<double> area;  // [mm^2]
+  std::vector<char> outer;   // by node: is it on the surface, mirrors aside?
+};
+Surface surface_of(const Tetrahedra& mesh, const Body& body) {
+  constexpr int faces[4][6] = {
+      {0, 2, 1, 6, 5, 4}, {0, 1, 3, 4, 9, 7}, {1, 2, 3, 5, 8, 9}, {0, 3, 2, 7, 8, 6}};
+  std::map<std::array<int, 3>, std::pair<int, std::array<int, 6>>> seen;
+  for (const auto& e : mesh.elements)
+    for (const auto& face : faces) {
+      std::array<int, 6> nodes;
+      for (int i = 0; i < 6; ++i) nodes[i] = e[face[i]];
+      std::array<int, 3> key{nodes[0], nodes[1], nodes[2]};
+      std::sort(key.begin(), key.end());
+      auto& entry = seen[key];
+      ++entry.first;
+      entry.second = nodes;
+    }
+  const double near = 1e-7 * body.size.maxCoeff();
+  Surface s;
+  s.outer.assign(mesh.nodes.size(), 0);
+  std::map<std::array<int, 3>, int> number;  // node, mirrored along x, along z
+  for (const auto& [key, entry] : seen) {
+    if (entry.first != 1) continue;
+    const auto& n = entry.second;
+    const auto on_mirror = [&](int axis) {
+      return std::all_of(n.begin(), n.end(), [&](int i) { return std::abs(mesh.nodes[i][axis]) < near; });
+    };
+    if ((body.half_x && on_mirror(0)) || (body.half_z && on_mirror(2))) continue;
+    for (int i : n) s.outer[i] = 1;
+    for (int mx = 0; mx <= body.half_x; ++mx)
+      for (int mz = 0; mz <= body.half_z; ++mz) {
+        std::array<int, 6> vertex;
+        for (int i = 0; i < 6; ++i) {
+          const V& p = mesh.nodes[n[i]];
+          const int kx = mx && std::abs(p.x()) > near, kz = mz && std::abs(p.z()) > near;
+          const auto [at, fresh] = number.try_emplace({n[i], kx, kz}, static_cast<int>(s.node.size()));
+          if (fresh) {
+            s.node.push_back(n[i]);
+            s.sign.push_back(V(kx ? -1 : 1, 1, kz ? -1 : 1));
+            s.place.push_back(p.cwiseProduct(s.sign.back()));
+          }
+          vertex[i] = at->second;
+        }
+        constexpr int parts[4][3] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
+        for (const auto& part : parts) {
+          std::array<int, 3> t{vertex[part[0]], vertex[part[1]], vertex[part[2]]};
+          if (mx != mz) std::swap(t[1], t[2]);
+          s.triangles.push_back(t);
+        }
+      }
+  }
+  s.area.assign(s.node.size(), 0);
+  for (const auto& t : s.triangles)
+    for (int c : t)
+      s.area[c] += (s.place[t[1]] - s.place[t[0]]).cross(s.place[t[2]] - s.place[t[0]]).norm() / 6;
+  return s;
+}
+
+struct File {
+  File(const std::string& path, const char* head) : file(std::fopen(path.c_str(), "w")) {
+    if (file == nullptr) throw std::runtime_error("cannot write " + path);
+    std::fputs(head, file);
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+  ~File() { std::fclose(file); }
+  FILE* file;
+};
+
+void make(const Case& c, const std::string& folder, double fineness) {
+  std::filesystem::create_directories(folder);
+  const std::string geo = folder + "/body.geo", msh = folder + "/body.msh";
+  { File script(geo, gmsh_script(c.body, c.patches, fineness).c_str()); }
+  if (std::system(("gmsh -3 -v 2 '" + geo + "' -o '" + msh + "'").c_str()) != 0)
+    throw std::runtime_error("gmsh failed on " + geo);
+  const Tetrahedra mesh = read_msh(msh);
+  const Surface surface = surface_of(mesh, c.body);
+  const double near = 1e-6 * c.body.size.maxCoeff();
+  const double held = c.body.kind == Body::ellipsoid ? c.body.held : 0;
+  std::vector<int> region(mesh.nodes.size(), 0);
+  for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
+    if (!surface.outer[n]) continue;
+    if (mesh.nodes[n].y() <= held + near) region[n] = -1;
+    for (std::size_t p = 0; p < c.patches.size(); ++p)
+      if ((mesh.nodes[n] - c.patches[p].place).norm() <= c.patches[p].radius * (1 + 1e-4))
+        region[n] = static_cast<int>(p) + 1;
+  }
+  Rubber rubber(mesh, c.E, c.nu, [&](int node, int axis) {
+    return region[node] != 0 || (axis == 0 && c.body.half_x && std::abs(mesh.nodes[node].x()) < near) ||
+           (axis == 2 && c.body.half_z && std::abs(mesh.nodes[node].z()) < near);
+  });
+  std::printf("%s: %zu nodes, %zu elements, %d equations, %zu vertices on the surface\n", c.name,
+              mesh.nodes.size(), mesh.elements.size(), rubber.equations(), surface.node.size());
+  std::fflush(stdout);
+
+  File obj(folder + "/surface.obj", ""),
+      vertices(folder + "/vertices.csv", "vertex,x,y,z,area_m2,region,r_over_a\n");
+  for (std::size_t v = 0; v < surface.node.size(); ++v) {
+    const V& p = surface.place[v];
+    double ratio = 1e300;
+    for (const Patch& patch : c.patches) ratio = (std::min)(ratio, (p - patch.place).norm() / patch.radius);
+    std::fprintf(obj.file, "v %.10g %.10g %.10g\n", p.x() / 1e3, p.y() / 1e3, p.z() / 1e3);
+    std::fprintf(vertices.file, "%zu,%.10g,%.10g,%.10g,%.6g,%d,%.6g\n", v, p.x() / 1e3, p.y() / 1e3,
+                 p.z() / 1e3, surface.area[v] / 1e6, region[surface.node[v]], ratio);
+  }
+  for (const auto& t : surface.triangles)
+    std::fprintf(obj.file, "f %d %d %d\n", t[0] + 1, t[1] + 1, t[2] + 1);
+
+  File meta(folder + "/meta.json", "{\n");
+  const auto list = [&](const V& v, double scale) {
+    std::fprintf(meta.file, "[%.10g, %.10g, %.10g]", v.x() * scale, v.y() * scale, v.z() * scale);
+  };
+  std::fprintf(meta.file, "\"material\": {\"E_Pa\": %.10g, \"nu\": %.10g},\n", c.E * 1e6, c.nu);
+  if (c.body.kind == Body::ellipsoid)
+    std::fprintf(meta.file, "\"fixed\": {\"y_max_m\": %.10g},\n", held / 1e3);
+  std::fprintf(meta.file, "\"patches\": [\n");
+  for (const Patch& p : c.patches) {
+    std::fprintf(meta.file, "%s{\"centre_m\": ", &p == &c.patches[0] ? "" : ",\n");
+    list(p.place, 1e-3);
+    std::fprintf(meta.file, ", \"radius_m\": %.10g, \"direction\": ", p.radius / 1e3);
+    list(p.direction, 1);
+    std::fprintf(meta.file, ", \"inward_normal\": ");
+    list(-p.normal, 1);
+    std::fprintf(meta.file, ", \"depth_factor\": %.10g}", p.factor);
+  }
+  std::fprintf(meta.file, "],\n\"depths_m\": [");
+
+  const Eigen::Index unknowns = rubber.state().size();
+  const auto motion = [&](double depth) {
+    Eigen::VectorXd d = Eigen::VectorXd::Zero(unknowns);
+    for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
+      if (region[n] > 0) {
+        const Patch& p = c.patches[static_cast<std::size_t>(region[n] - 1)];
+        for (int k = 0; k < 3; ++k)
+          if (!(k == 0 && c.body.half_x) && !(k == 2 && c.body.half_z))
+            d[3 * static_cast<Eigen::Index>(n) + k] = depth * p.factor * p.direction[k];
+      }
+    return d;
+  };
+  const auto write = [&](const File& shape, const File& force, double depth, double scale) {
+    for (std::size_t v = 0; v < surface.node.size(); ++v) {
+      const V u = scale * rubber.state().segment<3>(3 * surface.node[v]).cwiseProduct(surface.sign[v]) / 1e3;
+      std::fprintf(shape.file, "%.9g,%zu,%.9g,%.9g,%.9g\n", depth / 1e3, v, u.x(), u.y(), u.z());
+    }
+    for (std::size_t p = 0; p < c.patches.size(); ++p) {
+      V F = V::Zero();
+      for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
+        if (region[n] == static_cast<int>(p) + 1)
+          F += rubber.forces().segment<3>(3 * static_cast<Eigen::Index>(n));
+      F *= scale * (1 + c.body.half_x) * (1 + c.body.half_z);
+      if (c.body.half_x) F.x() = 0;
+      if (c.body.half_z) F.z() = 0;
+      std::fprintf(force.file, "%.9g,%zu,%.9g,%.9g,%.9g\n", depth / 1e3, p + 1, F.x(), F.y(), F.z());
+    }
+  };
+  const char *shape_head = "depth_m,vertex,ux,uy,uz\n", *force_head = "depth_m,patch,Fx,Fy,Fz\n";
+  {
+    const Eigen::VectorXd rest = rubber.state();
+    rubber.step(motion(1), true);
+    File shape(folder + "/displacement_linear.csv", shape_head),
+        force(folder + "/force_linear.csv", force_head);
+    for (double depth : c.depths) write(shape, force, depth, depth);
+    rubber.reset(rest);
+  }
+  File shape(folder + "/displacement.csv", shape_head), force(folder + "/force.csv", force_head);
+  const double smallest = c.patches[0].radius / 50;
+  double at = 0, stride = c.patches[0].radius / 4;
+  for (double depth : c.depths) {
+    while (at < depth && stride > smallest) {
+      const double d = (std::min)(stride, depth - at);
+      if (rubber.step(motion(d))) {
+        at = depth - at - d < 1e-9 ? depth : at + d;
+        std::printf("  %.3f mm, least J %.3f\n", at, rubber.least_volume_ratio());
+      } else {
+        stride = d / 2;
+      }
+      std::fflush(stdout);
+    }
+    if (at < depth) {
+      std::printf("  %.3f mm not reached\n", depth);
+      break;
+    }
+    write(shape, force, depth, 1);
+    std::fprintf(meta.file, "%s%.9g", depth == c.depths[0] ? "" : ", ", depth / 1e3);
+  }
+  std::fprintf(meta.file, "]\n}\n");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  for (const Case& c : cases()) {
+    if (argc < 4)
+      std::printf("%s\n", c.name);
+    else if (argv[1] == std::string(c.name)) {
+      make(c, argv[2], std::atof(argv[3]));
+      return 0;
+    }
+  }
+  return argc < 4 ? 0 : (std::fprintf(stderr, "no case %s\n", argv[1]), 1);
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "make_reference: %s\n", error.what());
+  return 1;
+}

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+#include <palpate/response/response_contact.hpp>
+
+#include "reference/half_space_truth.hpp"
+#include "support/check.hpp"
+#include "support/response_meshes.hpp"
+
+namespace {
+using namespace palpate;
+using V = Vec3<double>;
+
+// What a tick draws beyond small strain at `points` on a block of 60 x 30 x 60 patch radii, in parts of the way.
+class HalfSpace {
+ public:
+  explicit HalfSpace(double nu)
+      : field_(block(), [](const V& p) { return p.y() < -29.999; },
+               {.E = 1, .nu = nu, .mesh = {.vertices = 150}, .threads = 1}) {}
+
+  [[nodiscard]] std::vector<V> beyond_linear(const std::vector<V>& points, const V& d, double way) const {
+    std::vector<V> out(points.size(), V::Zero());
+    for (const bool second : {true, false}) {
+      ResponseTick<1> tick(field_, {.second_order = second});
+      const ResponseContact<double> contact{.normal = V::UnitY(), .radius = 1, .displacement = d};
+      V force;
+      tick.solve(&contact, 1, &force);
+      std::vector<double> u(3 * points.size());
+      tick.displace(ResponseDisplay(field_, points), u.data(), 3);
+      for (std::size_t i = 0; i < points.size(); ++i)
+        out[i] += (second ? 1 : -1) / way * V(u[3 * i], u[3 * i + 1], u[3 * i + 2]);
+    }
+    return out;
+  }
+
+ private:
+  static MeshData<double> block() {
+    MeshData<double> mesh = test::box_mesh(V(60, 30, 60), 8);
+    for (auto& p : mesh.vertices) p -= V(30, 30, 30);
+    return mesh;
+  }
+  ResponseField field_;
+};
+const HalfSpace& rubber() {
+  static const HalfSpace block(0.49);
+  return block;
+}
+}  // namespace
+
+// Bounds: what the fit leaves of finite elements whose own error beside the disc's edge is of this size.
+TEST_CASE("around a disc on a half-space, to 1.2 radii deep: finite elements") {
+  std::vector<V> right, left;
+  for (const auto& t : test::half_space_truth) {
+    right.push_back(V(t.s, 0, 0));
+    left.push_back(V(-t.s, 0, 0));
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double depth = test::half_space_pressed[k];
+    const auto u = rubber().beyond_linear(right, V(0, -depth, 0), depth);
+    double error = 0, size = 0;
+    for (std::size_t i = 0; i < u.size(); ++i) {
+      const auto& exact = test::half_space_truth[i].pressed[k];
+      error = (std::max)(error, std::hypot(u[i].x() - exact[0], -u[i].y() - exact[1]));
+      size = (std::max)(size, std::hypot(exact[0], exact[1]));
+    }
+    MESSAGE("pressed ", depth, " radii: largest error ", error, " of the way, of ", size);
+    CHECK(error < 0.02);
+  }
+  for (std::size_t k = 0; k < 2; ++k) {
+    const double depth = test::half_space_askew[k], angle = 35 * std::numbers::pi / 180;
+    const V d = depth * V(std::sin(angle), -std::cos(angle), 0);
+    const auto r = rubber().beyond_linear(right, d, depth), l = rubber().beyond_linear(left, d, depth);
+    double error = 0;
+    for (std::size_t i = 0; i < r.size(); ++i)
+      error = (std::max)(error, std::abs(0.5 * (r[i].x() + l[i].x()) - test::half_space_truth[i].askew[k]));
+    MESSAGE("askew ", depth, " radii: largest error ", error, " of the way");
+    CHECK(error < 0.02);
+  }
+}
+
+TEST_CASE("near terms are held beyond two radii and where the disc pulls, and go there gradually") {
+  const std::vector<V> points{V(1.3, 0, 0), V(0, 0, 2)};
+  const auto drawn = [&points](double depth) { return rubber().beyond_linear(points, V(0, -depth, 0), 1); };
+  double largest = 0;
+  std::vector<V> last = drawn(-3);
+  for (int i = -299; i <= 300; ++i) {
+    const std::vector<V> u = drawn(0.01 * i);
+    for (std::size_t k = 0; k < u.size(); ++k) largest = (std::max)(largest, (u[k] - last[k]).norm());
+    last = u;
+  }
+  // A slope of the drawn field by depth of 1 at most; nothing jumps.
+  CHECK(largest < 0.01);
+}
