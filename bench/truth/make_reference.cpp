@@ -153,74 +153,82 @@ struct File {
   FILE* file;
 };
 
-void make(const Case& c, const std::string& folder, double fineness) {
-  std::filesystem::create_directories(folder);
-  const std::string geo = folder + "/body.geo", msh = folder + "/body.msh";
-  { File script(geo, gmsh_script(c.body, c.patches, fineness).c_str()); }
-  if (std::system(("gmsh -3 -v 2 '" + geo + "' -o '" + msh + "'").c_str()) != 0)
-    throw std::runtime_error("gmsh failed on " + geo);
-  const Tetrahedra mesh = read_msh(msh);
-  const Surface surface = surface_of(mesh, c.body);
-  const double near = 1e-6 * c.body.size.maxCoeff();
-  const double held = c.body.kind == Body::ellipsoid ? c.body.held : 0;
+// 0 free, -1 held, k on patch k; by node.
+std::vector<int> regions(const Case& c, const Tetrahedra& mesh, const Surface& surface) {
+  const double held = (c.body.kind == Body::ellipsoid ? c.body.held : 0) + 1e-6 * c.body.size.maxCoeff();
   std::vector<int> region(mesh.nodes.size(), 0);
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
     if (!surface.outer[n]) continue;
-    if (mesh.nodes[n].y() <= held + near) region[n] = -1;
+    if (mesh.nodes[n].y() <= held) region[n] = -1;
     for (std::size_t p = 0; p < c.patches.size(); ++p)
       if ((mesh.nodes[n] - c.patches[p].place).norm() <= c.patches[p].radius * (1 + 1e-4))
         region[n] = static_cast<int>(p) + 1;
   }
+  return region;
+}
+
+void write_surface(const Case& c, const Surface& surface, const std::vector<int>& region,
+                   const std::string& folder) {
+  File obj(folder + "/surface.obj", ""),
+      vertices(folder + "/vertices.csv", "vertex,x,y,z,area_m2,region,r_over_a\n");
+  for (std::size_t v = 0; v < surface.node.size(); ++v) {
+    const V p = surface.place[v] / 1e3;
+    double ratio = 1e300;
+    for (const Patch& patch : c.patches)
+      ratio = (std::min)(ratio, (surface.place[v] - patch.place).norm() / patch.radius);
+    std::fprintf(obj.file, "v %.10g %.10g %.10g\n", p.x(), p.y(), p.z());
+    std::fprintf(vertices.file, "%zu,%.10g,%.10g,%.10g,%.6g,%d,%.6g\n", v, p.x(), p.y(), p.z(),
+                 surface.area[v] / 1e6, region[surface.node[v]], ratio);
+  }
+  for (const auto& t : surface.triangles)
+    std::fprintf(obj.file, "f %d %d %d\n", t[0] + 1, t[1] + 1, t[2] + 1);
+}
+
+void write_meta(const Case& c, const std::vector<double>& reached, const std::string& folder) {
+  File meta(folder + "/meta.json", "{\n");
+  const auto list = [](const V& v) { return text('[', v.x(), ", ", v.y(), ", ", v.z(), ']'); };
+  std::string patches, depths;
+  for (const Patch& p : c.patches)
+    patches += text(patches.empty() ? "" : ",\n", "{\"centre_m\": ", list(p.place / 1e3),
+                    ", \"radius_m\": ", p.radius / 1e3, ", \"direction\": ", list(p.direction),
+                    ", \"inward_normal\": ", list(-p.normal), ", \"depth_factor\": ", p.factor, '}');
+  for (double depth : reached) depths += text(depths.empty() ? "" : ", ", depth / 1e3);
+  std::string held;
+  if (c.body.kind == Body::ellipsoid) held = text("\"fixed\": {\"y_max_m\": ", c.body.held / 1e3, "},\n");
+  std::fputs(text("\"material\": {\"E_Pa\": ", c.E * 1e6, ", \"nu\": ", c.nu, "},\n", held,
+                  "\"patches\": [\n", patches, "],\n\"depths_m\": [", depths, "]\n}\n")
+                 .c_str(),
+             meta.file);
+}
+
+void make(const Case& c, const std::string& folder, double fineness) {
+  std::filesystem::create_directories(folder);
+  const std::string geo = folder + "/body.geo", msh = folder + "/body.msh";
+  { File script(geo, GmshScript(c.body, c.patches, fineness)().c_str()); }
+  if (std::system(("gmsh -3 -v 2 '" + geo + "' -o '" + msh + "'").c_str()) != 0)
+    throw std::runtime_error("gmsh failed on " + geo);
+  const Tetrahedra mesh = read_msh(msh);
+  const Surface surface = surface_of(mesh, c.body);
+  const std::vector<int> region = regions(c, mesh, surface);
+  write_surface(c, surface, region, folder);
+
+  const bool half[3] = {c.body.half_x, false, c.body.half_z};
+  const double near = 1e-6 * c.body.size.maxCoeff();
   Rubber rubber(mesh, c.E, c.nu, [&](int node, int axis) {
-    return region[node] != 0 || (axis == 0 && c.body.half_x && std::abs(mesh.nodes[node].x()) < near) ||
-           (axis == 2 && c.body.half_z && std::abs(mesh.nodes[node].z()) < near);
+    return region[node] != 0 || (half[axis] && std::abs(mesh.nodes[node][axis]) < near);
   });
   std::printf("%s: %zu nodes, %zu elements, %d equations, %zu vertices on the surface\n", c.name,
               mesh.nodes.size(), mesh.elements.size(), rubber.equations(), surface.node.size());
   std::fflush(stdout);
 
-  File obj(folder + "/surface.obj", ""),
-      vertices(folder + "/vertices.csv", "vertex,x,y,z,area_m2,region,r_over_a\n");
-  for (std::size_t v = 0; v < surface.node.size(); ++v) {
-    const V& p = surface.place[v];
-    double ratio = 1e300;
-    for (const Patch& patch : c.patches) ratio = (std::min)(ratio, (p - patch.place).norm() / patch.radius);
-    std::fprintf(obj.file, "v %.10g %.10g %.10g\n", p.x() / 1e3, p.y() / 1e3, p.z() / 1e3);
-    std::fprintf(vertices.file, "%zu,%.10g,%.10g,%.10g,%.6g,%d,%.6g\n", v, p.x() / 1e3, p.y() / 1e3,
-                 p.z() / 1e3, surface.area[v] / 1e6, region[surface.node[v]], ratio);
-  }
-  for (const auto& t : surface.triangles)
-    std::fprintf(obj.file, "f %d %d %d\n", t[0] + 1, t[1] + 1, t[2] + 1);
-
-  File meta(folder + "/meta.json", "{\n");
-  const auto list = [&](const V& v, double scale) {
-    std::fprintf(meta.file, "[%.10g, %.10g, %.10g]", v.x() * scale, v.y() * scale, v.z() * scale);
-  };
-  std::fprintf(meta.file, "\"material\": {\"E_Pa\": %.10g, \"nu\": %.10g},\n", c.E * 1e6, c.nu);
-  if (c.body.kind == Body::ellipsoid)
-    std::fprintf(meta.file, "\"fixed\": {\"y_max_m\": %.10g},\n", held / 1e3);
-  std::fprintf(meta.file, "\"patches\": [\n");
-  for (const Patch& p : c.patches) {
-    std::fprintf(meta.file, "%s{\"centre_m\": ", &p == &c.patches[0] ? "" : ",\n");
-    list(p.place, 1e-3);
-    std::fprintf(meta.file, ", \"radius_m\": %.10g, \"direction\": ", p.radius / 1e3);
-    list(p.direction, 1);
-    std::fprintf(meta.file, ", \"inward_normal\": ");
-    list(-p.normal, 1);
-    std::fprintf(meta.file, ", \"depth_factor\": %.10g}", p.factor);
-  }
-  std::fprintf(meta.file, "],\n\"depths_m\": [");
-
-  const Eigen::Index unknowns = rubber.state().size();
   const auto motion = [&](double depth) {
-    Eigen::VectorXd d = Eigen::VectorXd::Zero(unknowns);
-    for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
-      if (region[n] > 0) {
-        const Patch& p = c.patches[static_cast<std::size_t>(region[n] - 1)];
-        for (int k = 0; k < 3; ++k)
-          if (!(k == 0 && c.body.half_x) && !(k == 2 && c.body.half_z))
-            d[3 * static_cast<Eigen::Index>(n) + k] = depth * p.factor * p.direction[k];
-      }
+    Eigen::VectorXd d = Eigen::VectorXd::Zero(rubber.state().size());
+    for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
+      if (region[n] <= 0) continue;
+      const Patch& p = c.patches[static_cast<std::size_t>(region[n] - 1)];
+      for (int k = 0; k < 3; ++k)
+        if (!half[k]) d[3 * static_cast<Eigen::Index>(n) + k] = depth * p.factor * p.direction[k];
+    }
     return d;
   };
   const auto write = [&](const File& shape, const File& force, double depth, double scale) {
@@ -233,9 +241,12 @@ void make(const Case& c, const std::string& folder, double fineness) {
       for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
         if (region[n] == static_cast<int>(p) + 1)
           F += rubber.forces().segment<3>(3 * static_cast<Eigen::Index>(n));
-      F *= scale * (1 + c.body.half_x) * (1 + c.body.half_z);
-      if (c.body.half_x) F.x() = 0;
-      if (c.body.half_z) F.z() = 0;
+      F *= scale;
+      for (int k = 0; k < 3; ++k)  // of the mirrored parts, too
+        if (half[k]) {
+          F *= 2;
+          F[k] = 0;
+        }
       std::fprintf(force.file, "%.9g,%zu,%.9g,%.9g,%.9g\n", depth / 1e3, p + 1, F.x(), F.y(), F.z());
     }
   };
@@ -251,6 +262,7 @@ void make(const Case& c, const std::string& folder, double fineness) {
   File shape(folder + "/displacement.csv", shape_head), force(folder + "/force.csv", force_head);
   const double smallest = c.patches[0].radius / 50;
   double at = 0, stride = c.patches[0].radius / 4;
+  std::vector<double> reached;
   for (double depth : c.depths) {
     while (at < depth && stride > smallest) {
       const double d = (std::min)(stride, depth - at);
@@ -267,9 +279,9 @@ void make(const Case& c, const std::string& folder, double fineness) {
       break;
     }
     write(shape, force, depth, 1);
-    std::fprintf(meta.file, "%s%.9g", depth == c.depths[0] ? "" : ", ", depth / 1e3);
+    reached.push_back(depth);
   }
-  std::fprintf(meta.file, "]\n}\n");
+  write_meta(c, reached, folder);
 }
 
 }  // namespace

@@ -21,8 +21,7 @@ struct Body {
   double held = 0;  ///< height up to which the surface is held [mm]
   bool half_x = false, half_z = false;  ///< x = 0, z = 0 is a plane of symmetry
 
-  double top() const { return size.y(); }
-  double low() const { return kind == ellipsoid ? -size.y() : 0; }
+  /// Its least extent [mm].
   double smallest() const {
     return kind == cylinder ? (std::min)(2 * size.x(), size.y()) : (kind == box ? 1 : 2) * size.minCoeff();
   }
@@ -34,96 +33,115 @@ struct Tetrahedra {
   std::vector<std::array<int, 10>> elements;
 };
 
+template <class... Parts>
+std::string text(const Parts&... parts) {
+  std::ostringstream out;
+  out.precision(12);
+  (out << ... << parts);
+  return out.str();
+}
+
 /// A script for gmsh. Edges: at a patch's rim radius / fineness, growing by a third of the distance, at most a seventh of the body.
-inline std::string gmsh_script(const Body& body, const std::vector<Patch>& patches, double fineness) {
-  std::ostringstream geo;
-  geo.precision(12);
-  const double far = 10 * body.size.maxCoeff();
-  geo << "SetFactory(\"OpenCASCADE\");\n";
-  const V& s = body.size;
-  switch (body.kind) {
-    case Body::box:
-      geo << "Box(1) = {" << -s.x() / 2 << ", 0, " << -s.z() / 2 << ", " << s.x() << ", " << s.y() << ", "
-          << s.z() << "};\n";
-      break;
-    case Body::cylinder:
-      geo << "Cylinder(1) = {0, 0, 0, 0, " << s.y() << ", 0, " << s.x() << "};\n";
-      break;
-    case Body::ellipsoid:
-      geo << "Sphere(1) = {0, 0, 0, 1};\nDilate{{0, 0, 0}, {" << s.x() << ", " << s.y() << ", " << s.z()
-          << "}} {Volume{1};}\n";
+class GmshScript {
+ public:
+  GmshScript(const Body& body, const std::vector<Patch>& patches, double fineness)
+      : body_(body), far_(10 * body.size.maxCoeff()) {
+    script_ = "SetFactory(\"OpenCASCADE\");\n";
+    add_body();
+    cut(patches);
+    for (const Patch& p : patches) add_size(p.radius / fineness, to_rim(p));
+    add_sizes_of_body();
+    script_ +=
+        text("Background Field = ", fields_, ";\n",
+             "Mesh.CharacteristicLengthExtendFromBoundary = 0;\nMesh.CharacteristicLengthFromPoints = 0;\n"
+             "Mesh.Algorithm3D = 1;\nMesh.Optimize = 1;\nMesh.ElementOrder = 2;\nMesh.SaveAll = 1;\n"
+             "Mesh.MshFileVersion = 2.2;\n");
   }
-  if (body.half_x || body.half_z) {
-    geo << "Box(2) = {" << (body.half_x ? 0 : -far) << ", " << -far << ", " << (body.half_z ? 0 : -far)
-        << ", " << 2 * far << ", " << 2 * far << ", " << 2 * far << "};\n";
-    geo << "BooleanIntersection(3) = {Volume{1}; Delete;}{Volume{2}; Delete;};\n";
+  const std::string& operator()() const { return script_; }
+
+ private:
+  void add_body() {
+    const V& s = body_.size;
+    switch (body_.kind) {
+      case Body::box:
+        script_ += text("Box(1) = {", -s.x() / 2, ", 0, ", -s.z() / 2, ", ", list(s), "};\n");
+        break;
+      case Body::cylinder:
+        script_ += text("Cylinder(1) = {0, 0, 0, 0, ", s.y(), ", 0, ", s.x(), "};\n");
+        break;
+      case Body::ellipsoid:
+        script_ += text("Sphere(1) = {0, 0, 0, 1};\nDilate{{0, 0, 0}, {", list(s), "}} {Volume{1};}\n");
+    }
+    if (!body_.half_x && !body_.half_z) return;
+    const V low(body_.half_x ? 0 : -far_, -far_, body_.half_z ? 0 : -far_);
+    script_ += text("Box(2) = {", list(low), ", ", list(V::Constant(2 * far_)), "};\n",
+                    "BooleanIntersection(3) = {Volume{1}; Delete;}{Volume{2}; Delete;};\n");
   }
   // So that the mesh follows the edges of patches and of what is held, balls and a slab cut the body.
-  geo << "body() = Volume{:};\n";
-  int tag = 10;
-  std::string tools;
-  for (const Patch& p : patches) {
-    geo << "Sphere(" << tag << ") = {" << p.place.x() << ", " << p.place.y() << ", " << p.place.z() << ", "
-        << p.radius << "};\n"
-        << "BooleanIntersection(" << tag + 1 << ") = {Volume{" << tag << "}; Delete;}{Volume{body()};};\n";
-    tools += (tools.empty() ? "" : ", ") + std::to_string(tag + 1);
-    tag += 2;
-  }
-  if (body.kind == Body::ellipsoid) {
-    geo << "Box(" << tag << ") = {" << -far << ", " << -far << ", " << -far << ", " << 2 * far << ", "
-        << far + body.held << ", " << 2 * far << "};\nBooleanIntersection(" << tag + 1 << ") = {Volume{"
-        << tag << "}; Delete;}{Volume{body()};};\n";
-    tools += ", " + std::to_string(tag + 1);
-  }
-  geo << "BooleanFragments{Volume{body()}; Delete;}{Volume{" << tools << "}; Delete;}\n";
-  int field = 0;
-  const auto size = [&](double least, const std::string& distance) {
-    ++field;
-    geo << "Field[" << field << "] = MathEval;\nField[" << field << "].F = \"" << least << " + 0.33 * "
-        << distance << "\";\n";
-  };
-  for (const Patch& p : patches) {
-    std::ostringstream h, r2;
-    h.precision(12);
-    r2.precision(12);
-    const auto off = [](char axis, double c) {
-      std::ostringstream text;
-      text.precision(12);
-      text << '(' << axis << " - (" << c << "))";
-      return text.str();
+  void cut(const std::vector<Patch>& patches) {
+    script_ += "body() = Volume{:};\n";
+    int tag = 10;
+    std::string tools;
+    const auto add = [&](const std::string& tool) {
+      script_ +=
+          text(tool, "BooleanIntersection(", tag + 1, ") = {Volume{", tag, "}; Delete;}{Volume{body()};};\n");
+      tools += text(tools.empty() ? "" : ", ", tag + 1);
+      tag += 2;
     };
+    for (const Patch& p : patches) add(text("Sphere(", tag, ") = {", list(p.place), ", ", p.radius, "};\n"));
+    if (body_.kind == Body::ellipsoid)
+      add(text("Box(", tag, ") = {", list(V::Constant(-far_)), ", ",
+               list(V(2 * far_, far_ + body_.held, 2 * far_)), "};\n"));
+    script_ += "BooleanFragments{Volume{body()}; Delete;}{Volume{" + tools + "}; Delete;}\n";
+  }
+  void add_size(double least, const std::string& distance) {
+    ++fields_;
+    script_ += text("Field[", fields_, "] = MathEval;\nField[", fields_, "].F = \"", least, " + 0.33 * ",
+                    distance, "\";\n");
+  }
+  // The distance from the circle around a patch, in its tangent plane.
+  static std::string to_rim(const Patch& p) {
+    const auto off = [](char axis, double c) { return text('(', axis, " - (", c, "))"); };
     const std::string x = off('x', p.place.x()), y = off('y', p.place.y()), z = off('z', p.place.z());
-    h << "((" << p.normal.x() << ") * " << x << " + (" << p.normal.y() << ") * " << y << " + ("
-      << p.normal.z() << ") * " << z << ')';
-    r2 << "(abs(" << x << "^2 + " << y << "^2 + " << z << "^2 - " << h.str() << "^2))";
-    size(p.radius / fineness,
-         "sqrt((sqrt" + r2.str() + " - " + std::to_string(p.radius) + ")^2 + " + h.str() + "^2)");
+    const V& n = p.normal;
+    const std::string h =
+        text("((", n.x(), ") * ", x, " + (", n.y(), ") * ", y, " + (", n.z(), ") * ", z, ')');
+    const std::string along = text("sqrt(abs(", x, "^2 + ", y, "^2 + ", z, "^2 - ", h, "^2))");
+    return text("sqrt((", along, " - ", p.radius, ")^2 + ", h, "^2)");
   }
-  const double rim = body.smallest() / 30;
-  std::ostringstream text;
-  text.precision(12);
-  if (body.kind == Body::box) {
-    size(rim, "sqrt(y^2 + (abs(x) - " + std::to_string(s.x() / 2) + ")^2)");
-    size(rim, "sqrt(y^2 + (abs(z) - " + std::to_string(s.z() / 2) + ")^2)");
-  } else if (body.kind == Body::cylinder) {
-    size(rim, "sqrt(y^2 + (sqrt(x^2 + z^2) - " + std::to_string(s.x()) + ")^2)");
-  } else {
-    const double share = std::sqrt(1 - std::pow(body.held / s.y(), 2));
-    text << "sqrt((y - (" << body.held << "))^2 + ((sqrt((x / " << s.x() << ")^2 + (z / " << s.z()
-         << ")^2) - " << share << ") * " << (std::min)(s.x(), s.z()) << ")^2)";
-    size(rim / 2, text.str());
+  // Fine at the rim of what is held; then the least of all sizes.
+  void add_sizes_of_body() {
+    const V& s = body_.size;
+    const double rim = body_.smallest() / 30;
+    switch (body_.kind) {
+      case Body::box:
+        for (const auto& [axis, half] : {std::pair{'x', s.x() / 2}, {'z', s.z() / 2}})
+          add_size(rim, text("sqrt(y^2 + (abs(", axis, ") - ", half, ")^2)"));
+        break;
+      case Body::cylinder:
+        add_size(rim, text("sqrt(y^2 + (sqrt(x^2 + z^2) - ", s.x(), ")^2)"));
+        break;
+      case Body::ellipsoid: {
+        const double share = std::sqrt(1 - std::pow(body_.held / s.y(), 2));
+        add_size(rim / 2, text("sqrt((y - (", body_.held, "))^2 + ((sqrt((x / ", s.x(), ")^2 + (z / ", s.z(),
+                               ")^2) - ", share, ") * ", (std::min)(s.x(), s.z()), ")^2)"));
+      }
+    }
+    ++fields_;
+    script_ +=
+        text("Field[", fields_, "] = MathEval;\nField[", fields_, "].F = \"", body_.smallest() / 7, "\";\n");
+    std::string all = "1";
+    for (int f = 2; f <= fields_; ++f) all += text(", ", f);
+    ++fields_;
+    script_ += text("Field[", fields_, "] = Min;\nField[", fields_, "].FieldsList = {", all, "};\n");
   }
-  ++field;
-  geo << "Field[" << field << "] = MathEval;\nField[" << field << "].F = \"" << body.smallest() / 7
-      << "\";\n";
-  geo << "Field[" << field + 1 << "] = Min;\nField[" << field + 1 << "].FieldsList = {";
-  for (int f = 1; f <= field; ++f) geo << (f == 1 ? "" : ", ") << f;
-  geo << "};\nBackground Field = " << field + 1
-      << ";\nMesh.CharacteristicLengthExtendFromBoundary = 0;\nMesh.CharacteristicLengthFromPoints = 0;\n"
-         "Mesh.Algorithm3D = 1;\nMesh.Optimize = 1;\n\nMesh.ElementOrder = 2;\nMesh.SaveAll = "
-         "1;\nMesh.MshFileVersion = 2.2;\n";
-  return geo.str();
-}
+  static std::string list(const V& v) { return text(v.x(), ", ", v.y(), ", ", v.z()); }
+
+  Body body_;
+  double far_;
+  int fields_ = 0;
+  std::string script_;
+};
 
 /// Reads version 2.2 of gmsh's format. Throws std::runtime_error when the file holds no ten-node tetrahedra.
 inline Tetrahedra read_msh(const std::string& path) {
