@@ -11,6 +11,7 @@
 #include <cstring>
 #include <fstream>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,24 @@ inline std::string read_text(const std::string& path) {
   for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;) text.append(buffer, n);
   pclose(pipe);
   return text;
+}
+
+/// The numbers of a file of comma-separated values, its heading left out. Throws std::runtime_error where there are none.
+inline std::vector<std::vector<double>> csv_rows(const std::string& path) {
+  std::istringstream in(read_text(path));
+  std::string line;
+  if (!std::getline(in, line)) throw std::runtime_error("nothing in " + path);
+  std::vector<std::vector<double>> out;
+  while (std::getline(in, line)) {
+    out.emplace_back();
+    for (const char* p = line.c_str(); *p != '\0'; p += *p == ',') {
+      char* end = nullptr;
+      out.back().push_back(std::strtod(p, &end));
+      if (end == p) throw std::runtime_error("no number in " + path + ": " + line);
+      p = end;
+    }
+  }
+  return out;
 }
 
 /// The numbers after the next `key` from `from`: enough JSON for these files.

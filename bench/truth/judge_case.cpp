@@ -22,25 +22,9 @@ using namespace bench;
 using Vectors = std::map<long, V>;       // by vertex or patch
 using Depths = std::map<long, Vectors>;  // by depth [nm]
 
-std::vector<std::vector<double>> rows(const std::string& path) {
-  std::istringstream in(read_text(path));
-  std::string line;
-  if (!std::getline(in, line)) throw std::runtime_error("nothing in " + path);
-  std::vector<std::vector<double>> out;
-  while (std::getline(in, line)) {
-    out.emplace_back();
-    for (const char* p = line.c_str(); *p != '\0'; p += *p == ',') {
-      char* end = nullptr;
-      out.back().push_back(std::strtod(p, &end));
-      if (end == p) throw std::runtime_error("no number in " + path + ": " + line);
-      p = end;
-    }
-  }
-  return out;
-}
 Depths read(const std::string& path) {
   Depths out;
-  for (const auto& r : rows(path))
+  for (const auto& r : csv_rows(path))
     out[std::lround(1e9 * r.at(0))][std::lround(r.at(1))] = V(r.at(2), r.at(3), r.at(4));
   return out;
 }
@@ -72,18 +56,18 @@ int main(int argc, char** argv) try {
     return 1;
   }
   const std::string folder = std::string(argv[1]) + "/", which = argc > 4 ? "_linear.csv" : ".csv";
-  const auto vertices = rows(folder + "vertices.csv");
+  const auto vertices = csv_rows(folder + "vertices.csv");
   const Depths reference = read(folder + "displacement" + which), found = read(argv[2]);
   const Depths forces = read(folder + "force" + which), found_forces = read(argv[3]);
   std::printf("%s\n%8s %8s %8s %8s %8s   [%%]\n", argv[1], "mm", "L2", "far", "largest", "force");
-  Errors mean, deepest;
-  double squares = 0, worst = 0;
+  Errors deepest;
+  double mean_l2 = 0, mean_far = 0, squares = 0, worst = 0;
   int depths = 0, count = 0;
   for (const auto& [depth, u] : reference) {
     const auto at = found.find(depth);
     if (at == found.end()) continue;
     deepest = displacement_errors(at->second, u, vertices);
-    mean.l2 += deepest.l2, mean.far += deepest.far, mean.largest += deepest.largest;
+    mean_l2 += deepest.l2, mean_far += deepest.far;
     ++depths;
     double off = 0;
     for (const auto& [patch, force] : forces.at(depth)) {
@@ -97,7 +81,7 @@ int main(int argc, char** argv) try {
   }
   if (depths == 0) throw std::runtime_error("no depth in common");
   std::printf("displacement mean %.1f, deepest %.1f; far %.1f, %.1f; force RMS %.1f, max %.1f\n",
-              mean.l2 / depths, deepest.l2, mean.far / depths, deepest.far, std::sqrt(squares / count),
+              mean_l2 / depths, deepest.l2, mean_far / depths, deepest.far, std::sqrt(squares / count),
               worst);
   return 0;
 } catch (const std::exception& error) {

@@ -32,17 +32,10 @@ struct Case {
   std::map<double, std::vector<V>> force;  // by depth [m]: on the object, patch by patch [N]
 };
 
-std::map<double, std::vector<V>> read_force(const std::string& text) {
+std::map<double, std::vector<V>> read_force(const std::string& path) {
   std::map<double, std::vector<V>> force;
-  std::istringstream lines(text);
-  std::string line;
-  std::getline(lines, line);  // depth_m,patch,Fx,Fy,Fz,...: patches in order
-  while (std::getline(lines, line)) {
-    double depth = 0, patch = 0;
-    V f;
-    if (std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf,%lf", &depth, &patch, &f.x(), &f.y(), &f.z()) == 5)
-      force[depth].push_back(f);
-  }
+  for (const auto& row : csv_rows(path))  // depth_m,patch,Fx,Fy,Fz,...: patches in order
+    force[row.at(0)].push_back(V(row.at(2), row.at(3), row.at(4)));
   return force;
 }
 
@@ -113,7 +106,7 @@ int main(int argc, char** argv) {
   Case test{read_text(folder + "meta.json"),
             read_obj(read_text(folder + "surface.obj")),
             {},
-            read_force(read_text(folder + "force.csv"))};
+            read_force(folder + "force.csv")};
   test.patches = read_patches(test.meta);
   if (test.patches.empty() || test.mesh.vertices.empty()) {
     std::fprintf(stderr, "skeleton_cases: %s has no patches or no surface\n", argv[1]);
