@@ -31,17 +31,18 @@ struct Axes {
 using Lane3 = Axes<Lane>;
 
 struct ContactNear {
-  Vec3<float> place, m;  ///< m: unit normal into the body
-  Vec3<float> along;     ///< tangential part of the force / (4 pi mu)
-  Vec3<float> tilt;      ///< moment of tilt / (4 pi mu)
-  Vec3<float> turn;      ///< slope at the patch's edge that is taken back outside, times s^-7
-  Mat3<float> shear;     ///< in the patch's plane / (4 pi mu)
-  Vec3<float> push;      ///< taken back outside the patch, times s^-8
-  float normal = 0;      ///< normal part of the force / (4 pi mu)
-  float dipole = 0;      ///< radial double force / (4 pi mu)
-  float radial = 0;      ///< k_r d_n delta_n / a; so are the next four
-  float radial_4 = 0, radial_6 = 0, normal_4 = 0, normal_6 = 0;
-  Vec3<float> slide = Vec3<float>::Zero();  ///< t beta^2 delta_t
+  Vec3<float> place, m;              ///< m: unit normal into the body
+  Vec3<float> along;                 ///< tangential part of the force / (4 pi mu)
+  Vec3<float> tilt;                  ///< moment of tilt / (4 pi mu)
+  Vec3<float> turn;                  ///< slope at the patch's edge that is taken back outside, times s^-7
+  Mat3<float> shear;                 ///< in the patch's plane / (4 pi mu)
+  Vec3<float> push;                  ///< taken back outside the patch, times s^-8
+  float normal = 0;                  ///< normal part of the force / (4 pi mu)
+  float dipole = 0;                  ///< radial double force / (4 pi mu)
+  float radial = 0;                  ///< k_r d_n delta_n / a
+  float radial_4 = 0, radial_6 = 0;  ///< r_4 d_n delta_n / a^2, r_6 likewise
+  float normal_4 = 0, normal_6 = 0;  ///< n_4 d_n delta_n / a, n_6 likewise
+  Vec3<float> slide = Vec3<float>::Zero();  ///< t beta^2 delta_t / a^2
   float rim2 = 1;                           ///< e^2
   float a = 1, nu = 0.5f;
   float sag = 0;         ///< how deep the patch's edge lies below its plane, at most
@@ -87,8 +88,7 @@ struct ContactNear {
                     root(larger(beyond + rim2 * near2, splat<V>(1e-12f)));
       const V near4 = near2 * near2, falling = near4 * root(beyond),
               slid = px * slide.x() + py * slide.y() + pz * slide.z();
-      in_plane += dipole * d.in_plane + q_r +
-                  inverse * falling * ((radial_4 + radial_6 * near2) / a + slid / (a * a));
+      in_plane += dipole * d.in_plane + q_r + inverse * falling * (radial_4 + radial_6 * near2 + slid);
       const V back = near4 * near4;
       turned_back = back * inverse;
       down += dipole * d.normal + falling * (normal_4 + normal_6 * near2);

@@ -156,11 +156,12 @@ class ContactSystem {
   [[nodiscard]] ContactNear near_of(const Contact& c) const noexcept {
     constexpr double scale = 1 / (4 * std::numbers::pi);
     const double pushed = c.P.dot(c.m), nu = field_->nu();
+    const SecondOrder& k = settings_.constants;
     // At the rim the double force's disc moves -dipole (2 - 2 nu) 3 / (32 a^2); the near term takes it back. (At nu = 0 there
     // is nothing to take back.)
     const double per_depth = 1 / (c.a * disc_compliance(c.a, nu).normal);
     const double moved = (std::max)(outward(nu), 0.01) * per_depth * (2 - 2 * nu);
-    const double rim = settings_.constants.radial * 16 / (3 * moved) * std::numbers::pi;
+    const double rim = k.radial * 16 / (3 * moved) * std::numbers::pi;
     ContactNear near;
     near.place = c.x.template cast<float>();
     near.m = c.m.template cast<float>();
@@ -179,17 +180,13 @@ class ContactSystem {
     near.turn = (0.375 * (1 - nu) / (c.a * c.a * c.a) * c.turn).template cast<float>();
     near.push = c.push.template cast<float>();
     near.dipole = static_cast<float>(scale * dipole);
-    const SecondOrder& k = settings_.constants;
-    const auto deep = [&c](const DeepFactor& factor) {
-      return static_cast<float>(factor.at(c.beta) * c.dn2 / c.a);
-    };
-    near.radial = static_cast<float>(k.radial * c.dn2 / c.a);
-    near.radial_4 = deep(k.radial_4);
-    near.radial_6 = deep(k.radial_6);
-    near.normal_4 = deep(k.normal_4);
-    near.normal_6 = deep(k.normal_6);
-    const double known = (std::min)(c.beta, 1.0);
-    near.slide = (k.slide.at(known) * known * known * c.delta_t).template cast<float>();
+    const double dn2 = c.dn2 / c.a, known = (std::min)(c.beta, 1.0);
+    near.radial = static_cast<float>(k.radial * dn2);
+    near.radial_4 = static_cast<float>(k.radial_4.at(c.beta) * dn2 / c.a);
+    near.radial_6 = static_cast<float>(k.radial_6.at(c.beta) * dn2 / c.a);
+    near.normal_4 = static_cast<float>(k.normal_4.at(c.beta) * dn2);
+    near.normal_6 = static_cast<float>(k.normal_6.at(c.beta) * dn2);
+    near.slide = (k.slide.at(known) * known * known / (c.a * c.a) * c.delta_t).template cast<float>();
     near.rim2 = static_cast<float>(rim * rim);
     near.a = static_cast<float>(c.a);
     near.sag = static_cast<float>(c.sag);
