@@ -4,7 +4,8 @@
 /// @file  Bends of the solve mesh's edges near the contacts (edge_bend.hpp), for quadratic display. Per tick.
 ///
 /// Over a triangle with corners' weights b_0, b_1, b_2 a field is drawn as sum b_c u_c + 4 sum b_c b_{c+1} bend_c. What bends most is
-/// the body's correction next to an edge of the body: linear display is half of the error of first order there.
+/// the body's correction next to an edge of the body: linear display is half of the error of first order there. Far away the bends
+/// are left out, and u_c raised instead (edge_bend.hpp).
 
 #include <palpate/response/contact_near.hpp>
 #include <palpate/response/edge_bend.hpp>
@@ -13,12 +14,29 @@
 
 namespace palpate {
 
-/// Where each edge is, and weights with bend = sum weight u(vertex); none where both ends are fixed. From the solve mesh alone.
+/// Where each edge is, and weights with bend = sum weight u(vertex), none where both ends are fixed; by vertex, those with
+/// raise = sum weight u(vertex), none where it is fixed. From the solve mesh alone.
 class BendTable {
  public:
   struct Weight {
     std::uint32_t vertex;
     float weight;
+  };
+  struct Rows {
+    std::vector<std::uint32_t> begin{0};  ///< first weight of each, and one more
+    std::vector<Weight> weights;
+
+    [[nodiscard]] std::span<const Weight> operator[](std::size_t i) const noexcept {
+      return {weights.data() + begin[i], begin[i + 1] - begin[i]};
+    }
+    [[nodiscard]] std::size_t size() const noexcept { return begin.size() - 1; }
+    [[nodiscard]] std::size_t memory() const noexcept {
+      return begin.size() * sizeof(begin[0]) + weights.size() * sizeof(Weight);
+    }
+    void push_back(const std::vector<detail::VertexWeight>& row) {
+      for (const auto& w : row) weights.push_back({w.vertex, static_cast<float>(w.weight)});
+      begin.push_back(static_cast<std::uint32_t>(weights.size()));
+    }
   };
   using Edges = std::array<std::uint32_t, 3>;  ///< from corner c to c + 1
 
@@ -32,50 +50,41 @@ class BendTable {
         rests[e] =
             mesh.fixed_vertex[mesh.triangles[t][c]] && mesh.fixed_vertex[mesh.triangles[t][(c + 1) % 3]];
       }
-    for (std::size_t e = 0; e < bend.size(); ++e) {
-      if (!rests[e])
-        for (const detail::VertexWeight& w : bend[e])
-          weights_.push_back({w.vertex, static_cast<float>(w.weight)});
-      begin_.push_back(static_cast<std::uint32_t>(weights_.size()));
-    }
+    for (std::size_t e = 0; e < bend.size(); ++e)
+      bends_.push_back(rests[e] ? std::vector<detail::VertexWeight>{} : bend[e]);
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) raises_.push_back(bend.raise(v));
     find_middles(mesh);
   }
   /// From saved parts.
-  BendTable(const SolveMesh& mesh, std::vector<Edges> of_triangle, std::vector<std::uint32_t> begin,
-            std::vector<Weight> weights)
-      : of_triangle_(std::move(of_triangle)), begin_(std::move(begin)), weights_(std::move(weights)) {
+  BendTable(const SolveMesh& mesh, std::vector<Edges> of_triangle, Rows bends, Rows raises)
+      : of_triangle_(std::move(of_triangle)), bends_(std::move(bends)), raises_(std::move(raises)) {
     find_middles(mesh);
   }
 
-  [[nodiscard]] std::span<const Weight> operator[](std::size_t edge) const noexcept {
-    return {weights_.data() + begin_[edge], begin_[edge + 1] - begin_[edge]};
-  }
-  [[nodiscard]] std::size_t size() const noexcept { return begin_.size() - 1; }
+  [[nodiscard]] const Rows& bends() const noexcept { return bends_; }    ///< by edge
+  [[nodiscard]] const Rows& raises() const noexcept { return raises_; }  ///< by vertex
   [[nodiscard]] const std::array<std::uint32_t, 2>& ends(std::size_t edge) const noexcept {
     return ends_[edge];
   }
   /// Middles of all edges, by coordinate, whole lanes; out of reach where an edge never bends.
   [[nodiscard]] const std::array<std::vector<float>, 3>& middles() const noexcept { return middle_; }
   [[nodiscard]] const std::vector<Edges>& of_triangle() const noexcept { return of_triangle_; }
-  /// First weight of each edge, and one more.
-  [[nodiscard]] const std::vector<std::uint32_t>& begin() const noexcept { return begin_; }
-  [[nodiscard]] const std::vector<Weight>& weights() const noexcept { return weights_; }
   [[nodiscard]] std::size_t memory() const noexcept {
     return of_triangle_.size() * sizeof(Edges) + ends_.size() * sizeof(ends_[0]) +
-           3 * middle_[0].size() * sizeof(float) + begin_.size() * 4 + weights_.size() * sizeof(Weight);
+           3 * middle_[0].size() * sizeof(float) + bends_.memory() + raises_.memory();
   }
 
  private:
   void find_middles(const SolveMesh& mesh) {
-    ends_.resize(size());
+    ends_.resize(bends_.size());
     for (std::size_t t = 0; t < of_triangle_.size(); ++t)
       for (std::size_t c = 0; c < 3; ++c)
         ends_[of_triangle_[t][c]] = {mesh.triangles[t][c], mesh.triangles[t][(c + 1) % 3]};
-    for (auto& list : middle_) list.assign(detail::whole<detail::Lane>(size()), 1e9f);
-    for (std::size_t e = 0; e < size(); ++e) {
-      if ((*this)[e].empty()) continue;
+    for (auto& list : middle_) list.assign(detail::whole<detail::Lane>(bends_.size()), 1e9f);
+    for (std::size_t e = 0; e < bends_.size(); ++e) {
+      if (bends_[e].empty()) continue;
       Vec3<double> x = 0.5 * (mesh.vertices[ends_[e][0]] + mesh.vertices[ends_[e][1]]);
-      for (const Weight& w : (*this)[e]) x += double(w.weight) * mesh.vertices[w.vertex];
+      for (const Weight& w : bends_[e]) x += double(w.weight) * mesh.vertices[w.vertex];
       for (std::size_t axis = 0; axis < 3; ++axis)
         middle_[axis][e] = static_cast<float>(x[static_cast<Eigen::Index>(axis)]);
     }
@@ -84,8 +93,7 @@ class BendTable {
   std::vector<Edges> of_triangle_;
   std::vector<std::array<std::uint32_t, 2>> ends_;
   std::array<std::vector<float>, 3> middle_;
-  std::vector<std::uint32_t> begin_{0};
-  std::vector<Weight> weights_;
+  Rows bends_, raises_;
 };
 
 namespace detail {
@@ -124,6 +132,24 @@ class BentEdges {
       bend_near(near[c], own + 3 * stride * c, stride, own_[c]);
     }
   }
+  /// Raises `field`, at the vertices, four numbers each, as far as the bends of its edges are left out. `vertices`: coordinates.
+  void raise(const std::array<const float*, 3>& vertices, const float* field,
+             const std::array<ContactNear, Capacity>& near, std::size_t count, float reach,
+             float* raised) const noexcept {
+    const BendTable::Rows& raises = table_->raises();
+    for (std::size_t first = 0; first < raises.size(); first += lane_size) {
+      const Lane3 at{lane_at(vertices[0] + first), lane_at(vertices[1] + first),
+                     lane_at(vertices[2] + first)};
+      Lane left = four(1);
+      for (std::size_t c = 0; c < count; ++c) left *= 1 - share(near[c], at, reach);
+      for (std::size_t k = 0; k < lane_size && first + k < raises.size(); ++k) {
+        const std::size_t v = first + k;
+        Lane u = lane_at(field + 4 * v);
+        if (left[k] > 0) u += left[k] * sum(raises[v], field);
+        store_vector(raised + 4 * v, u);
+      }
+    }
+  }
   /// False where none of a triangle's edges is near a contact.
   [[nodiscard]] PALPATE_INLINE bool find(std::size_t triangle, OfTriangle& out) const noexcept {
     return all_.find(table_->of_triangle()[triangle], out);
@@ -141,8 +167,9 @@ class BentEdges {
     std::vector<float> bend;          // by edge, four numbers each; 0 without a share
     std::vector<std::uint32_t> bent;  // edges with a share; never more than reserved
 
-    explicit Bends(const BendTable& table) : share(table.middles()[0].size()), bend(4 * table.size()) {
-      bent.reserve(table.size());
+    explicit Bends(const BendTable& table)
+        : share(table.middles()[0].size()), bend(4 * table.bends().size()) {
+      bent.reserve(table.bends().size());
     }
     // After the shares: the edges, none of which has a bend yet.
     void list() noexcept {
@@ -173,19 +200,23 @@ class BentEdges {
                      lane_at(total + 2 * stride + v) - z);
     }
   }
+  // How much of the bends at a place is drawn for one contact: 1 near it, 0 beyond its reach.
+  [[nodiscard]] static PALPATE_INLINE Lane share(const ContactNear& near, const Lane3& at,
+                                                 float reach) noexcept {
+    const Lane x = at.x - near.place.x(), y = at.y - near.place.y(), z = at.z - near.place.z();
+    const Lane inside = reach + near.a - root(x * x + y * y + z * z);
+    return between(Lane(inside * (4 / reach)), 0, 1);
+  }
   void find_shares(const std::array<ContactNear, Capacity>& near, std::size_t count, float reach) noexcept {
     const auto& [x, y, z] = table_->middles();
     for (std::size_t e = 0; e < x.size(); e += lane_size) {
-      const Lane ex = lane_at(&x[e]), ey = lane_at(&y[e]), ez = lane_at(&z[e]);
+      const Lane3 at{lane_at(&x[e]), lane_at(&y[e]), lane_at(&z[e])};
       Lane without = four(1), most{};
       for (std::size_t c = 0; c < count; ++c) {
-        const Vec3<float>& place = near[c].place;
-        const Lane rx = ex - place.x(), ry = ey - place.y(), rz = ez - place.z();
-        const Lane inside = reach + near[c].a - root(rx * rx + ry * ry + rz * rz);
-        const Lane share = between(Lane(inside * (4 / reach)), 0, 1);
-        store_vector(&own_[c].share[e], share);
-        without *= 1 - share;
-        most = larger(most, share);
+        const Lane own = share(near[c], at, reach);
+        store_vector(&own_[c].share[e], own);
+        without *= 1 - own;
+        most = larger(most, own);
       }
       store_vector(&all_.share[e], larger(1 - without, most));  // above 0 where one is, whatever the rounding
     }
@@ -215,10 +246,10 @@ class BentEdges {
     }
   }
   // Four sums: one alone would wait for each of some 25 additions.
-  [[nodiscard]] Lane bend(std::uint32_t edge) const noexcept {
-    const auto weights = (*table_)[edge];
+  [[nodiscard]] static PALPATE_INLINE Lane sum(std::span<const BendTable::Weight> weights,
+                                               const float* field) noexcept {
     const auto part = [&](std::size_t i) {
-      return weights[i].weight * lane_at(&rest_[4 * weights[i].vertex]);
+      return weights[i].weight * lane_at(field + 4 * weights[i].vertex);
     };
     Lane sum{}, sum1{}, sum2{}, sum3{};
     std::size_t i = 0;
@@ -229,7 +260,10 @@ class BentEdges {
       sum3 += part(i + 3);
     }
     for (; i < weights.size(); ++i) sum += part(i);
-    return 4 * all_.share[edge] * ((sum + sum1) + (sum2 + sum3));
+    return (sum + sum1) + (sum2 + sum3);
+  }
+  [[nodiscard]] Lane bend(std::uint32_t edge) const noexcept {
+    return 4 * all_.share[edge] * sum(table_->bends()[edge], rest_.data());
   }
 
   const BendTable* table_;

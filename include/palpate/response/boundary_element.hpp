@@ -3,9 +3,10 @@
 
 /// @file  Boundary elements: from a solve mesh to displacements by one dense factorisation. Set-up only.
 ///
-/// Somigliana's identity at every vertex x, t linear on each triangle, u and geometry quadratic, mu = 1:
+/// Somigliana's identity at every vertex x, u and geometry quadratic, known t linear on each triangle, mu = 1:
 ///     c u(x) + int T(x,y) u(y) dS = int U(x,y) t(y) dS       ->       H u = G t
-/// u at the middles of edges is no unknown: the neighbours tell it (edge_bend.hpp).
+/// u at the middles of edges is no unknown: the neighbours tell it (edge_bend.hpp). So they do with the unknown t of the
+/// fixed region, where none of them is free.
 /// A rigid translation has no traction, so H's diagonal block is minus the sum of the others in its row: neither c nor a
 /// principal value is computed. Unknown: u at free vertices, t at fixed ones. Source: [brebbia1984].
 
@@ -133,23 +134,25 @@ class BoundaryElements {
         fixed_number[v] = Eigen::Index(fixed_.size());
         fixed_.push_back(v);
       }
+    const std::vector<char> within_fixed = edges_within_fixed();
     H_.setZero(3 * n, 3 * n);
     G_.setZero(3 * n, 3 * Eigen::Index(mesh_.nodes.size()));
     G_fixed_.setZero(3 * n, 3 * Eigen::Index(fixed_.size()));
     detail::parallel_for(mesh_.vertices.size(), threads_, [&](std::size_t i) {
       const Vec3<double>& x = mesh_.vertices[i];
       Row h = Row::Zero(3, H_.cols()), g = Row::Zero(3, G_.cols()), gf = Row::Zero(3, G_fixed_.cols());
-      Mat3<double> T[3], B[3], U[3], sum = Mat3<double>::Zero();
-      std::vector<Mat3<double>> bent(bend_.size(), Mat3<double>::Zero());
+      Mat3<double> T[3], B[3], U[3], D[3], sum = Mat3<double>::Zero();
+      std::vector<Mat3<double>> bent(bend_.size(), Mat3<double>::Zero()), bent_traction = bent;
       std::vector<detail::ElementPoint> scratch;
       for (std::size_t t = 0; t < elements_.size(); ++t) {
-        for (int c = 0; c < 3; ++c) T[c].setZero(), B[c].setZero(), U[c].setZero();
+        for (int c = 0; c < 3; ++c) T[c].setZero(), B[c].setZero(), U[c].setZero(), D[c].setZero();
         int self = -1;
         for (int c = 0; c < 3; ++c)
           if (mesh_.triangles[t][static_cast<std::size_t>(c)] == i) self = c;
-        integrate(x, t, self, T, B, U, scratch);
+        integrate(x, t, self, T, B, U, D, scratch);
         for (std::size_t c = 0; c < 3; ++c) {
           bent[bend_.edge(t, c)] += B[c];
+          bent_traction[bend_.edge(t, c)] += D[c];
           const std::uint32_t v = mesh_.triangles[t][c];
           if (int(c) != self) {
             h.middleCols<3>(3 * Eigen::Index(v)) += T[c];
@@ -161,18 +164,32 @@ class BoundaryElements {
       }
       h.middleCols<3>(3 * Eigen::Index(i)) = -sum;
       for (std::size_t e = 0; e < bend_.size(); ++e)
-        for (const detail::VertexWeight& w : bend_[e])
+        for (const detail::VertexWeight& w : bend_[e]) {
           h.middleCols<3>(3 * Eigen::Index(w.vertex)) += w.weight * bent[e];
+          if (within_fixed[e]) gf.middleCols<3>(3 * fixed_number[w.vertex]) += w.weight * bent_traction[e];
+        }
       H_.middleRows<3>(3 * Eigen::Index(i)) = h;
       G_.middleRows<3>(3 * Eigen::Index(i)) = g;
       G_fixed_.middleRows<3>(3 * Eigen::Index(i)) = gf;
     });
   }
 
-  // Integrals of T phi_c, U phi_c and, for the middle of edge c, B: T 4 phi_c phi_c+1 over one triangle, from x; `self`:
-  // x's corner or -1, whose T phi is left out.
+  // Of each edge: do it and all vertices that tell its bend lie in the fixed region?
+  [[nodiscard]] std::vector<char> edges_within_fixed() const {
+    std::vector<char> out(bend_.size(), 1);
+    for (std::size_t t = 0; t < elements_.size(); ++t)
+      for (std::size_t c = 0; c < 3; ++c)
+        if (!mesh_.fixed_triangle[t]) out[bend_.edge(t, c)] = 0;
+    for (std::size_t e = 0; e < out.size(); ++e)
+      for (const detail::VertexWeight& w : bend_[e])
+        if (!mesh_.fixed_vertex[w.vertex]) out[e] = 0;
+    return out;
+  }
+
+  // Integrals over one triangle, from x, of T phi_c, U phi_c and, for the middle of edge c, B: T 4 phi_c phi_c+1,
+  // D: U 4 phi_c phi_c+1; `self`: x's corner or -1, whose T phi is left out.
   void integrate(const Vec3<double>& x, std::size_t t, int self, Mat3<double>* T, Mat3<double>* B,
-                 Mat3<double>* U, std::vector<detail::ElementPoint>& scratch) const {
+                 Mat3<double>* U, Mat3<double>* D, std::vector<detail::ElementPoint>& scratch) const {
     const detail::Element& e = elements_[t];
     const auto add = [&](const detail::ElementPoint& q) {
       const Vec3<double> r = q.x - x;
@@ -180,7 +197,9 @@ class BoundaryElements {
       for (int c = 0; c < 3; ++c) {
         U[c] += q.weight[c] * u;
         if (c != self) T[c] += q.weight[c] * s;
-        B[c] += (4 * q.weight[c] * q.weight[(c + 1) % 3]) * s;
+        const double both = 4 * q.weight[c] * q.weight[(c + 1) % 3];
+        B[c] += both * s;
+        D[c] += both * u;
       }
     };
     if (self >= 0) {

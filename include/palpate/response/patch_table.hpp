@@ -264,7 +264,7 @@ class PatchTable {
         add(out[k], mesh.triangles[node.triangle][c], l[Eigen::Index(c)]);
         const double bent = 4 * l[Eigen::Index(c)] * l[Eigen::Index(d)];
         if (bent == 0) continue;
-        for (const BendTable::Weight& w : bends[bends.of_triangle()[node.triangle][c]])
+        for (const BendTable::Weight& w : bends.bends()[bends.of_triangle()[node.triangle][c]])
           add(out[k], w.vertex, bent * double(w.weight));
       }
     }

@@ -3,8 +3,9 @@
 
 /// @file  From the solve mesh's vertices to those of a display, under solved contacts. Per tick.
 ///
-/// The field is linear over the solve mesh's triangles, quadratic within four edges of a contact (bent_edges.hpp); within one edge of a
-/// patch the contact's own near field is taken at the vertex itself instead of its interpolant.
+/// The field is quadratic over the solve mesh's triangles within 2.5 edges of a contact, elsewhere linear between raised vertices
+/// (bent_edges.hpp); within one edge of a patch the contact's own near field is taken at the vertex itself instead of its
+/// interpolant.
 
 #include <palpate/response/bent_edges.hpp>
 #include <palpate/response/contact_system.hpp>
@@ -31,6 +32,7 @@ class ResponseDrawing {
   explicit ResponseDrawing(const ResponseField& field)
       : field_(&field),
         total_(4 * field.stride(), 0.f),
+        raised_(total_),
         close_(whole<Lane>(field.mesh().triangles.size())),
         bends_(field.bends(), field.stride()) {}
 
@@ -39,8 +41,10 @@ class ResponseDrawing {
     const std::size_t n = field_->stride();
     for (std::size_t v = 0; v < n; v += lane_size)
       store_by_fours(&total_[4 * v], lane_at(total + v), lane_at(total + n + v), lane_at(total + 2 * n + v));
-    const auto bend_reach = static_cast<float>(4 * field_->mesh().length);  // beyond, w hardly bends
+    const auto bend_reach = static_cast<float>(2.5 * field_->mesh().length);
     bends_.read(total, contacts.own, n, contacts.near, contacts.count, bend_reach);
+    bends_.raise({field_->coordinate(0), field_->coordinate(1), field_->coordinate(2)}, total_.data(),
+                 contacts.near, contacts.count, bend_reach, raised_.data());
   }
 
   /// emit(slot, u) with a lane of displacements from that slot on, until all of a display have theirs. An `emit` that can be
@@ -111,7 +115,7 @@ class ResponseDrawing {
   [[nodiscard]] PALPATE_INLINE Interpolant total_over(std::size_t triangle) const noexcept {
     const auto& [p, q, r] = field_->mesh().triangles[triangle];
     Interpolant u;
-    u.linear = {lane_at(&total_[4 * p]), lane_at(&total_[4 * q]), lane_at(&total_[4 * r])};
+    u.linear = {lane_at(&raised_[4 * p]), lane_at(&raised_[4 * q]), lane_at(&raised_[4 * r])};
     u.bent = !field_->mesh().fixed_triangle[triangle] && bends_.find(triangle, u.bend);
     return u;
   }
@@ -236,8 +240,9 @@ class ResponseDrawing {
   }
 
   const ResponseField* field_;
-  std::vector<float> total_;  // the field at the solve mesh's vertices, four numbers each
-  std::vector<float> close_;  // by span of the display: above 0 within reach of a contact
+  std::vector<float> total_;   // the field at the solve mesh's vertices, four numbers each
+  std::vector<float> raised_;  // the same, raised where its bends are left out
+  std::vector<float> close_;   // by span of the display: above 0 within reach of a contact
   BentEdges<Capacity> bends_;
 };
 

@@ -37,8 +37,7 @@ struct ResponseParts {
   std::vector<std::uint32_t> spread_begin;  ///< see PatchTable
   std::vector<TouchMesh::Share> spread;
   std::vector<BendTable::Edges> edges;  ///< see BendTable
-  std::vector<std::uint32_t> bend_begin;
-  std::vector<BendTable::Weight> bends;
+  BendTable::Rows bends, raises;
 };
 
 class ResponseField {
@@ -90,7 +89,7 @@ class ResponseField {
                        std::move(parts.shares));
     table_ = PatchTable(touch_, std::move(parts.own), std::move(parts.second), std::move(parts.moments),
                         levels, std::move(parts.spread_begin), std::move(parts.spread));
-    bends_ = BendTable(mesh_, std::move(parts.edges), std::move(parts.bend_begin), std::move(parts.bends));
+    bends_ = BendTable(mesh_, std::move(parts.edges), std::move(parts.bends), std::move(parts.raises));
     place_vertices();
   }
   [[nodiscard]] ResponseParts parts() const {
@@ -108,8 +107,8 @@ class ResponseField {
             table_.spread_begin(),
             table_.all_spread(),
             bends_.of_triangle(),
-            bends_.begin(),
-            bends_.weights()};
+            bends_.bends(),
+            bends_.raises()};
   }
 
   [[nodiscard]] double E() const noexcept { return E_; }

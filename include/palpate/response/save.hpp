@@ -25,7 +25,7 @@
 
 namespace palpate {
 
-inline constexpr std::uint32_t saved_field_version = 5;
+inline constexpr std::uint32_t saved_field_version = 6;
 
 namespace detail {
 
@@ -142,8 +142,10 @@ class ByteReader {
   body.put_list(parts.spread_begin);
   body.put_list(parts.spread);
   body.put_list(parts.edges);
-  body.put_list(parts.bend_begin);
-  body.put_list(parts.bends);
+  for (const BendTable::Rows* rows : {&parts.bends, &parts.raises}) {
+    body.put_list(rows->begin);
+    body.put_list(rows->weights);
+  }
   body.put_list(parts.columns);
   const std::span<const std::byte> content =
       std::span<const std::byte>(body.bytes).subspan(detail::saved_head);
@@ -196,8 +198,10 @@ class ByteReader {
   parts.spread_begin = in.get_list<std::uint32_t>();
   parts.spread = in.get_list<TouchMesh::Share>();
   parts.edges = in.get_list<BendTable::Edges>();
-  parts.bend_begin = in.get_list<std::uint32_t>();
-  parts.bends = in.get_list<BendTable::Weight>();
+  for (BendTable::Rows* rows : {&parts.bends, &parts.raises}) {
+    rows->begin = in.get_list<std::uint32_t>();
+    rows->weights = in.get_list<BendTable::Weight>();
+  }
   parts.columns = in.get_list<float>();
   // Contents: a bad number here would be read out of bounds in a tick.
   const auto require = [where](bool holds, const char* rule) {
@@ -232,12 +236,16 @@ class ByteReader {
               levels < 64 && parts.own.size() == levels * parts.triangles.size(),
           "the tables' lengths are not the nodes'");
   require_shares(parts.spread_begin, parts.spread, levels * k, k, solved);
-  bool bends = parts.edges.size() == parts.mesh.triangles.size() && !parts.bend_begin.empty() &&
-               parts.bend_begin.front() == 0 && parts.bend_begin.back() == parts.bends.size() &&
-               std::is_sorted(parts.bend_begin.begin(), parts.bend_begin.end());
+  bool bends = parts.edges.size() == parts.mesh.triangles.size();
+  for (const BendTable::Rows* rows : {&parts.bends, &parts.raises}) {
+    const auto& begin = rows->begin;
+    bends = bends && !begin.empty() && begin.front() == 0 && begin.back() == rows->weights.size() &&
+            std::is_sorted(begin.begin(), begin.end());
+    for (const auto& w : rows->weights) bends = bends && w.vertex < n && is_finite(w.weight);
+  }
+  bends = bends && parts.raises.size() == n;
   for (const auto& t : parts.edges)
-    for (auto e : t) bends = bends && e + std::size_t{1} < parts.bend_begin.size();
-  for (const auto& w : parts.bends) bends = bends && w.vertex < n && is_finite(w.weight);
+    for (auto e : t) bends = bends && e < parts.bends.size();
   require(bends, "the edges' bends are not the mesh's");
   for (const auto& t : parts.mesh.triangles)
     for (auto v : t) require(v < n, "a triangle's corner is not a vertex");
