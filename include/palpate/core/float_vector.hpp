@@ -71,14 +71,14 @@ PALPATE_INLINE void transpose(Float4& a, Float4& b, Float4& c, Float4& d) noexce
   d = __builtin_shufflevector(ab_high, cd_high, 2, 3, 6, 7);
 }
 
-/// Rows of four one after the other: x0 y0 z0 0, x1 y1 z1 0, ..
-PALPATE_INLINE void store_by_fours(float* to, Float4 x, Float4 y, Float4 z) noexcept {
+/// Rows of four one after the other, `step` numbers apart: x0 y0 z0 0, x1 y1 z1 0, ..
+PALPATE_INLINE void store_by_fours(float* to, Float4 x, Float4 y, Float4 z, std::size_t step = 4) noexcept {
   Float4 none{};
   transpose(x, y, z, none);
   store_vector(to, x);
-  store_vector(to + 4, y);
-  store_vector(to + 8, z);
-  store_vector(to + 12, none);
+  store_vector(to + step, y);
+  store_vector(to + 2 * step, z);
+  store_vector(to + 3 * step, none);
 }
 
 /// Rows one after the other: x0 y0 z0 x1, y1 z1 x2 y2, z2 x3 y3 z3.

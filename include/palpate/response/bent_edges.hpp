@@ -200,12 +200,12 @@ class BentEdges {
                      lane_at(total + 2 * stride + v) - z);
     }
   }
-  // How much of the bends at a place is drawn for one contact: 1 near it, 0 beyond its reach.
+  // How much of the bends at a place is drawn for one contact: 1 near it, 0 beyond its reach, or if it has let go.
   [[nodiscard]] static PALPATE_INLINE Lane share(const ContactNear& near, const Lane3& at,
                                                  float reach) noexcept {
     const Lane x = at.x - near.place.x(), y = at.y - near.place.y(), z = at.z - near.place.z();
     const Lane inside = reach + near.a - root(x * x + y * y + z * z);
-    return between(Lane(inside * (4 / reach)), 0, 1);
+    return near.grip * between(Lane(inside * (4 / reach)), 0, 1);
   }
   void find_shares(const std::array<ContactNear, Capacity>& near, std::size_t count, float reach) noexcept {
     const auto& [x, y, z] = table_->middles();

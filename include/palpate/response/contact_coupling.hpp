@@ -40,6 +40,7 @@ struct PlacedContact {
   Vec3<double> tilt = Vec3<double>::Zero();     ///< / mu
   Vec3<double> turn = Vec3<double>::Zero();     ///< its part of second order
   Vec3<double> push = Vec3<double>::Zero();
+  double kept = 0;  ///< of second order
   double sag = 0;                  ///< how deep the patch's edge lies below its plane, at most
   PatchMoments moments;            ///< of a wide patch
   Moments held = Moments::Zero();  ///< its loads / mu

@@ -116,6 +116,9 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
   const double steep = indented / c.a;
   c.push = near.along * near.along * k.drag / (1 + steep * steep) * indented * dragged -
            near.normal * k.softening * indented * depth * c.m;
+  // The patch, too, would turn with the body (turned_field.hpp); it is held where it is. The tool feels that as `lever`.
+  const Vec3<double> going = 0.5 * (k.turned * gone + k.crossed * (c.d - gone)),
+                     turned = going.dot(leaning) * c.m - going.dot(c.m) * leaning;
   const Vec3<double> answer = moved.by(dipole, c.turn), second = c.push - answer;
   const double share = kept(moved.size(answer, dipole, c.turn) + c.push.norm(), c) * kept_of_force(second, c);
   c.dn2 *= share;
@@ -124,7 +127,8 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
   c.push *= share;
   c.dipole += share * dipole;
   c.tilt += c.turn;
-  c.rhs += share * second;
+  c.rhs += share * (second - turned);
+  c.kept = share;
   // Two energies of third degree in P, of which the loads above are the derivatives by w's gradient; those by P are felt by the
   // tool only. D e: e is the surface's strain by w under the patch (by reciprocity radial . P), D = -outward delta_n P_n; that by
   // P_n is 2 D e / P_n. lever (P_n w_t - w_n P_t) . s, s the slope of w_n: a body that bends or turns beneath the patch moves it
@@ -133,7 +137,7 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
                                k.lever * (slid.dot(leaning) * c.m + pushed * (c.w * leaning) -
                                           sunk * leaning - dragged.dot(leaning) * (c.w * c.m));
   const Vec3<double> doubled = 2 * stiffer;  // so that it is at most a quarter of d, and of the force
-  c.extra = c.S * (kept(doubled.norm(), c) * kept_of_force(doubled, c) * stiffer);
+  c.extra = c.S * (share * turned + kept(doubled.norm(), c) * kept_of_force(doubled, c) * stiffer);
 }
 
 }  // namespace palpate::detail

@@ -27,6 +27,22 @@ struct Axes {
     z += u.z;
     return *this;
   }
+  [[nodiscard]] friend PALPATE_INLINE Axes operator+(const Axes& u, const Axes& v) noexcept {
+    return {u.x + v.x, u.y + v.y, u.z + v.z};
+  }
+  [[nodiscard]] friend PALPATE_INLINE Axes operator-(const Axes& u, const Axes& v) noexcept {
+    return {u.x - v.x, u.y - v.y, u.z - v.z};
+  }
+  template <class K>
+  [[nodiscard]] friend PALPATE_INLINE Axes operator*(const K& k, const Axes& u) noexcept {
+    return {k * u.x, k * u.y, k * u.z};
+  }
+  [[nodiscard]] friend PALPATE_INLINE V dot(const Axes& u, const Axes& v) noexcept {
+    return u.x * v.x + u.y * v.y + u.z * v.z;
+  }
+  [[nodiscard]] friend PALPATE_INLINE Axes cross(const Axes& u, const Axes& v) noexcept {
+    return {u.y * v.z - u.z * v.y, u.z * v.x - u.x * v.z, u.x * v.y - u.y * v.x};
+  }
 };
 using Lane3 = Axes<Lane>;
 
@@ -45,6 +61,7 @@ struct ContactNear {
   Vec3<float> slide = Vec3<float>::Zero();  ///< t beta^2 delta_t / a^2
   float rim2 = 1;                           ///< e^2
   float a = 1, nu = 0.5f;
+  float grip = 1;        ///< 0: let go, a contact that changes nothing (ContactSystem::loosen)
   float sag = 0;         ///< how deep the patch's edge lies below its plane, at most
   bool second = false;   ///< any load beside the force
   bool tilted = false;   ///< tilt is not zero

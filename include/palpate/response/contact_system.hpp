@@ -41,6 +41,8 @@ class ContactSystem {
     settings_.constants = settings.constants.at(field.nu());
   }
 
+  /// As they are for this body's nu.
+  [[nodiscard]] const SecondOrder& constants() const noexcept { return settings_.constants; }
   [[nodiscard]] Contact& operator[](std::size_t c) noexcept { return contact_[c]; }
   [[nodiscard]] const Contact& operator[](std::size_t c) const noexcept { return contact_[c]; }
 
@@ -67,7 +69,7 @@ class ContactSystem {
   }
 
   void locate(Contact& c) const noexcept {
-    c.dipole = c.dn2 = c.beta = 0;
+    c.dipole = c.dn2 = c.beta = c.kept = 0;
     c.delta_t.setZero();
     c.tilt.setZero();
     c.turn.setZero();
@@ -190,6 +192,7 @@ class ContactSystem {
     near.rim2 = static_cast<float>(rim * rim);
     near.a = static_cast<float>(c.a);
     near.sag = static_cast<float>(c.sag);
+    near.grip = static_cast<float>(c.grip);
     near.nu = static_cast<float>(nu);
     near.second = dipole != 0;
     near.tilted = tilt.squaredNorm() > 0;

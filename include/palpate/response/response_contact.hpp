@@ -8,6 +8,7 @@
 #include <palpate/response/contact_system.hpp>
 #include <palpate/response/response_drawing.hpp>
 #include <palpate/response/sphere_contact.hpp>
+#include <palpate/response/turned_field.hpp>
 
 namespace palpate {
 
@@ -25,6 +26,7 @@ class ResponseTick {
         near_(Capacity * 3 * field.stride(), 0.f),
         weight_(field.touch().solved(), 0.f),
         moment_(3 * field.touch().solved(), 0.f),
+        turned_(field),
         drawing_(field) {
     patch_.reserve(weight_.size());
   }
@@ -160,6 +162,7 @@ class ResponseTick {
     }
     const Row free(field_->is_free(), static_cast<Eigen::Index>(n));
     for (std::size_t axis = 0; axis < 3; ++axis) sum.segment(Eigen::Index(axis * n), Eigen::Index(n)) *= free;
+    turn();
     hold_back();
     drawing_.read(total_.data(), drawn());
   }
@@ -167,12 +170,29 @@ class ResponseTick {
     return {contact_, near_field_, near_.data(), count_};
   }
 
+  [[nodiscard]] double deepest2() const noexcept {
+    double d2 = 0;
+    for (std::size_t c = 0; c < count_; ++c) d2 = (std::max)(d2, contact_[c].d.squaredNorm());
+    return d2;
+  }
+  // What the body's rotation adds, as far as the contacts keep second order; held to twice d.
+  void turn() noexcept {
+    double kept = 1;
+    for (std::size_t c = 0; c < count_; ++c)
+      kept = (std::min)(kept, std::lerp(1., contact_[c].kept, contact_[c].grip));
+    if (count_ == 0 || kept == 0) return;
+    const float most =
+        turned_.find(total_.data(), near_.data(), contact_, count_, contact_.constants(), second_.data());
+    kept *= detail::fading(double(most), 4 * deepest2());
+    const auto size = static_cast<Eigen::Index>(total_.size());
+    Eigen::Map<Eigen::ArrayXf>(total_.data(), size) +=
+        static_cast<float>(kept) * Eigen::Map<const Eigen::ArrayXf>(second_.data(), size);
+  }
+
   // A body may move farther than the tool by its levers; a field beyond 4 d is one that the mesh does not resolve. It is
   // drawn smaller: never a spike.
   void hold_back() noexcept {
-    double d2 = 0;
-    for (std::size_t c = 0; c < count_; ++c) d2 = (std::max)(d2, contact_[c].d.squaredNorm());
-    const auto share = static_cast<float>(detail::fading(largest(total_), 16 * d2));
+    const auto share = static_cast<float>(detail::fading(largest(total_), 16 * deepest2()));
     if (!(share < 1)) return;
     const std::size_t n = field_->stride();
     Eigen::Map<Eigen::ArrayXf>(total_.data(), static_cast<Eigen::Index>(total_.size())) *= share;
@@ -216,6 +236,7 @@ class ResponseTick {
   std::vector<float> weight_;         // per solved node: its part of a contact's force; 0 between uses
   std::vector<float> moment_;         // three numbers each, likewise
   std::vector<std::uint32_t> patch_;  // nodes with a part; never more than reserved
+  detail::TurnedField<Capacity> turned_;
   detail::ResponseDrawing<Capacity> drawing_;
 };
 

@@ -19,6 +19,7 @@
 #include <palpate/response/bent_edges.hpp>
 #include <palpate/response/patch_table.hpp>
 #include <palpate/response/response_columns.hpp>
+#include <palpate/response/rotation_table.hpp>
 
 namespace palpate {
 
@@ -90,7 +91,7 @@ class ResponseField {
     table_ = PatchTable(touch_, std::move(parts.own), std::move(parts.second), std::move(parts.moments),
                         levels, std::move(parts.spread_begin), std::move(parts.spread));
     bends_ = BendTable(mesh_, std::move(parts.edges), std::move(parts.bends), std::move(parts.raises));
-    place_vertices();
+    read_mesh();
   }
   [[nodiscard]] ResponseParts parts() const {
     return {E_,
@@ -121,9 +122,10 @@ class ResponseField {
   [[nodiscard]] const TouchMesh& touch() const noexcept { return touch_; }
   [[nodiscard]] const PatchTable& table() const noexcept { return table_; }
   [[nodiscard]] const BendTable& bends() const noexcept { return bends_; }
+  [[nodiscard]] const RotationTable& rotation() const noexcept { return rotation_; }
   /// Bytes that a tick may read.
   [[nodiscard]] std::size_t memory() const noexcept {
-    return columns_.size() * sizeof(float) + table_.memory() + bends_.memory();
+    return columns_.size() * sizeof(float) + table_.memory() + bends_.memory() + rotation_.memory();
   }
   /// Vertices of the solve mesh, rounded up to whole registers, whatever this processor's.
   [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
@@ -209,7 +211,7 @@ class ResponseField {
                         [this](std::size_t k, std::size_t l) { return column(k, l); });
     columns_.resize(loads * 3 * stride_ * touch_.solved());
     columns_.shrink_to_fit();
-    place_vertices();
+    read_mesh();
     report(1);
   }
 
@@ -247,7 +249,9 @@ class ResponseField {
     }
   }
 
-  void place_vertices() {
+  // What a tick reads of the mesh alone.
+  void read_mesh() {
+    rotation_ = RotationTable(mesh_, stride_);
     place_.assign(4 * stride_, 0.f);
     for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
       for (std::size_t i = 0; i < 3; ++i)
@@ -261,6 +265,7 @@ class ResponseField {
   TouchMesh touch_;
   PatchTable table_;
   BendTable bends_;
+  RotationTable rotation_;
   std::vector<float> columns_, place_;
   std::size_t stride_ = 0;
 };
