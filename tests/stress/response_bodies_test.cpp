@@ -195,7 +195,7 @@ void try_body(const test::ResponseBody& body, double convergence) {
   // as at most half of d.
   CHECK(stiffest <= 1.5 / 0.1);
   // A jump keeps its size when a step is cut in 16,384; those that were found here had at least 0.02, the fastest smooth change
-  // has up to 0.009 (10,000 paths; standing plate).
+  // has up to 0.010 (10,000 paths; lying plate).
   CHECK(force_jump < 0.02);
   CHECK(field_jump < 0.02);
   CHECK(median < convergence);

@@ -10,6 +10,7 @@
 #include <palpate/response/contact_near.hpp>
 #include <palpate/response/edge_bend.hpp>
 
+#include <limits>
 #include <span>
 
 namespace palpate {
@@ -133,20 +134,26 @@ class BentEdges {
     }
   }
   /// Raises `field`, at the vertices, four numbers each, as far as the bends of its edges are left out. `vertices`: coordinates.
+  /// By `most` / 2 at most, smoothly: more is what the mesh does not resolve.
   void raise(const std::array<const float*, 3>& vertices, const float* field,
-             const std::array<ContactNear, Capacity>& near, std::size_t count, float reach,
+             const std::array<ContactNear, Capacity>& near, std::size_t count, float reach, float most,
              float* raised) const noexcept {
     const BendTable::Rows& raises = table_->raises();
+    const float most2 = most * most + (std::numeric_limits<float>::min)();
     for (std::size_t first = 0; first < raises.size(); first += lane_size) {
       const Lane3 at{lane_at(vertices[0] + first), lane_at(vertices[1] + first),
                      lane_at(vertices[2] + first)};
       Lane left = four(1);
       for (std::size_t c = 0; c < count; ++c) left *= 1 - share(near[c], at, reach);
+      Lane by[lane_size];
+      for (std::size_t k = 0; k < lane_size; ++k)
+        by[k] = left[k] > 0 && first + k < raises.size() ? sum(raises[first + k], field) : Lane{};
+      Lane x = by[0], y = by[1], z = by[2], none = by[3];
+      transpose(x, y, z, none);
+      const Lane kept = left * most2 / (most2 + (x * x + y * y + z * z));
       for (std::size_t k = 0; k < lane_size && first + k < raises.size(); ++k) {
-        const std::size_t v = first + k;
-        Lane u = lane_at(field + 4 * v);
-        if (left[k] > 0) u += left[k] * sum(raises[v], field);
-        store_vector(raised + 4 * v, u);
+        const std::size_t v = 4 * (first + k);
+        store_vector(raised + v, Lane(lane_at(field + v) + kept[k] * by[k]));
       }
     }
   }

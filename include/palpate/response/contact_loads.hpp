@@ -118,7 +118,9 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
            near.normal * k.softening * indented * depth * c.m;
   // The patch, too, would turn with the body (turned_field.hpp); it is held where it is. The tool feels that as `lever`.
   const Vec3<double> going = 0.5 * (k.turned * gone + k.crossed * (c.d - gone)),
-                     turned = going.dot(leaning) * c.m - going.dot(c.m) * leaning;
+                     turning = going.dot(leaning) * c.m - going.dot(c.m) * leaning,
+                     twice_turned = 2 * turning,
+                     turned = kept(twice_turned.norm(), c) * kept_of_force(twice_turned, c) * turning;
   const Vec3<double> answer = moved.by(dipole, c.turn), second = c.push - answer;
   const double share = kept(moved.size(answer, dipole, c.turn) + c.push.norm(), c) * kept_of_force(second, c);
   c.dn2 *= share;

@@ -83,7 +83,7 @@ TEST_CASE(
   const detail::BentEdges<1> bent(table, n);
   std::vector<float> raised(field.size(), 0.f);
 
-  bent.raise(vertices, field.data(), {contact_at(V(1, 1, 1))}, 1, 0.06f, raised.data());
+  bent.raise(vertices, field.data(), {contact_at(V(1, 1, 1))}, 1, 0.06f, 1e3f, raised.data());
   V sum = V::Zero(), linear_sum = V::Zero(), square = V::Zero(), linear_square = V::Zero();
   std::size_t checked = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -116,9 +116,18 @@ TEST_CASE(
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     if (mesh.fixed_vertex[v]) CHECK(raised[4 * v + 1] == field[4 * v + 1]);
 
-  bent.raise(vertices, field.data(), {contact_at(V(0.05, 0.1, 0.05))}, 1, 1.f, raised.data());
+  bent.raise(vertices, field.data(), {contact_at(V(0.05, 0.1, 0.05))}, 1, 1.f, 1e3f, raised.data());
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     for (std::size_t i = 0; i < 3; ++i) CHECK(raised[4 * v + i] == field[4 * v + i]);
+
+  std::vector<float> wild(
+      field.size());  // nothing is raised by more than half of what is asked for, nor is it without
+  for (std::size_t i = 0; i < wild.size(); ++i) wild[i] = i % 7 == 0 ? 100.f : -100.f;
+  for (const float most : {0.02f, 0.f}) {
+    bent.raise(vertices, wild.data(), {contact_at(V(1, 1, 1))}, 1, 0.06f, most, raised.data());
+    for (std::size_t i = 0; i < 4 * mesh.vertices.size(); ++i)
+      CHECK(std::abs(raised[i] - wild[i]) <= 0.5f * most + 1e-4f);  // rounding of 100 in float
+  }
 }
 
 TEST_CASE("near fields are drawn by their values at the middles of edges, a contact's own and all of them") {
