@@ -116,7 +116,8 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
   const double steep = indented / c.a;
   c.push = near.along * near.along * k.drag / (1 + steep * steep) * indented * dragged -
            near.normal * k.softening * indented * depth * c.m;
-  // The patch, too, would turn with the body (turned_field.hpp); it is held where it is. The tool feels that as `lever`.
+  // The patch, too, would turn with the body (turned_field.hpp); it is held where it is. The tool feels that as `lever`. At most a
+  // quarter of d, and of the force.
   const Vec3<double> going = 0.5 * (k.turned * gone + k.crossed * (c.d - gone)),
                      turning = going.dot(leaning) * c.m - going.dot(c.m) * leaning,
                      twice_turned = 2 * turning,

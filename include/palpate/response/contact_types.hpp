@@ -46,8 +46,9 @@ struct DeepFactor {
 
 /// Constants of second order in depth and more, for a stuck patch on neo-Hookean rubber; depth <= 2 a. They are those of nu = 1/2;
 /// `at(nu)` is what is used, below 0.3 that of 0.3. What is drawn near the patch (DeepFactor, contact_near.hpp) was fitted at nu = 0.49 on
-/// finite elements of a half-space alone, pressed normally and askew; the rest on pushes into a cube, a block, a wall and two ellipsoids, its
-/// change with nu on one normal and one skew push at 0.3. Rounded, used for every body (docs/accuracy.md).
+/// finite elements of a half-space alone, pressed normally and askew; the rest on pushes into a cube, a block, a wall and two ellipsoids, but
+/// `turned` and `crossed` on all references of docs/accuracy.md; the change with nu on one normal and one skew push at 0.3. Rounded,
+/// used for every body.
 /// delta_n, delta_t: local indentation, the displacement of a half-space by the same force, normal and tangential; w_n, w_t: the rest,
 /// by which the body as a whole gives way; s: slope of w_n under the patch. Without constants: the radial double force
 /// -nu / (1 - nu) F_n d_n, F_n at most twice the half-space's, and the force by which a body that spreads under the patch stiffens.
