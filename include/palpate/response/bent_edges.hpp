@@ -150,7 +150,8 @@ class BentEdges {
         by[k] = left[k] > 0 && first + k < raises.size() ? sum(raises[first + k], field) : Lane{};
       Lane x = by[0], y = by[1], z = by[2], none = by[3];
       transpose(x, y, z, none);
-      const Lane kept = left * most2 / (most2 + (x * x + y * y + z * z));
+      const Lane3 r{x, y, z};
+      const Lane kept = left * most2 / (most2 + dot(r, r));
       for (std::size_t k = 0; k < lane_size && first + k < raises.size(); ++k) {
         const std::size_t v = 4 * (first + k);
         store_vector(raised + v, Lane(lane_at(field + v) + kept[k] * by[k]));
@@ -210,8 +211,8 @@ class BentEdges {
   // How much of the bends at a place is drawn for one contact: 1 near it, 0 beyond its reach, or if it has let go.
   [[nodiscard]] static PALPATE_INLINE Lane share(const ContactNear& near, const Lane3& at,
                                                  float reach) noexcept {
-    const Lane x = at.x - near.place.x(), y = at.y - near.place.y(), z = at.z - near.place.z();
-    const Lane inside = reach + near.a - root(x * x + y * y + z * z);
+    const Lane3 r{at.x - near.place.x(), at.y - near.place.y(), at.z - near.place.z()};
+    const Lane inside = reach + near.a - root(dot(r, r));
     return near.grip * between(Lane(inside * (4 / reach)), 0, 1);
   }
   void find_shares(const std::array<ContactNear, Capacity>& near, std::size_t count, float reach) noexcept {

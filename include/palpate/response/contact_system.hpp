@@ -45,6 +45,12 @@ class ContactSystem {
   [[nodiscard]] const SecondOrder& constants() const noexcept { return settings_.constants; }
   [[nodiscard]] Contact& operator[](std::size_t c) noexcept { return contact_[c]; }
   [[nodiscard]] const Contact& operator[](std::size_t c) const noexcept { return contact_[c]; }
+  /// Largest d^2 of the first `count` contacts.
+  [[nodiscard]] double deepest2(std::size_t count) const noexcept {
+    double d2 = 0;
+    for (std::size_t c = 0; c < count; ++c) d2 = (std::max)(d2, contact_[c].d.squaredNorm());
+    return d2;
+  }
 
   /// P of the first `count` contacts, all located: first by the forces alone; they give the further loads.
   void solve(std::size_t count) noexcept {

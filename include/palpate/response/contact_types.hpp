@@ -64,9 +64,8 @@ struct SecondOrder {
   double drag =
       1.2;  ///< tangential force drag mu delta_n delta_t / (1 + (delta_n / a)^2); times 1 + 1.3 b, b = 1 - 2 nu
   double softening = 0.36;  ///< normal force -softening mu delta_n d_n; times 1 - 2.5 b
-  double turned =
-      0.7;  ///< displacement by the rotation of w, where theory has 1 for a body that turns as a whole; the same for every nu
-  double crossed = 0.3;  ///< by w's and the near field's together; the same for every nu (turned_field.hpp)
+  double turned = 0.7;      ///< displacement by the rotation of w (turned_field.hpp); the same for every nu
+  double crossed = 0.3;     ///< by w's and the near field's together; the same for every nu
 
   [[nodiscard]] SecondOrder at(double nu) const noexcept {
     const double held = nu > 0.3 ? nu : 0.3, b = 1 - 2 * held;

@@ -124,8 +124,8 @@ class EdgeBend {
   }
 
   void find_raise(const SolveMesh& m, const std::vector<Fit>& fits) {
-    std::vector<Vec3d> by(m.nodes.size(),
-                          Vec3d::Zero());  // r = sum by . K over the vertex's nodes, times its mass
+    // r times the vertex's mass = sum by . K over its nodes.
+    std::vector<Vec3d> by(m.nodes.size(), Vec3d::Zero());
     std::vector<double> mass(m.vertices.size(), 0);
     for (std::size_t t = 0; t < m.triangles.size(); ++t) {
       const auto& corner = m.triangles[t];

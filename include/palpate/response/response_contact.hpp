@@ -170,11 +170,6 @@ class ResponseTick {
     return {contact_, near_field_, near_.data(), count_};
   }
 
-  [[nodiscard]] double deepest2() const noexcept {
-    double d2 = 0;
-    for (std::size_t c = 0; c < count_; ++c) d2 = (std::max)(d2, contact_[c].d.squaredNorm());
-    return d2;
-  }
   // What the body's rotation adds, as far as the contacts keep second order; held to twice d.
   void turn() noexcept {
     double kept = 1;
@@ -183,7 +178,7 @@ class ResponseTick {
     if (count_ == 0 || kept == 0) return;
     const float most =
         turned_.find(total_.data(), near_.data(), contact_, count_, contact_.constants(), second_.data());
-    kept *= detail::fading(double(most), 4 * deepest2());
+    kept *= detail::fading(double(most), 4 * contact_.deepest2(count_));
     const auto size = static_cast<Eigen::Index>(total_.size());
     Eigen::Map<Eigen::ArrayXf>(total_.data(), size) +=
         static_cast<float>(kept) * Eigen::Map<const Eigen::ArrayXf>(second_.data(), size);
@@ -192,7 +187,7 @@ class ResponseTick {
   // A body may move farther than the tool by its levers; a field beyond 4 d is one that the mesh does not resolve. It is
   // drawn smaller: never a spike.
   void hold_back() noexcept {
-    const auto share = static_cast<float>(detail::fading(largest(total_), 16 * deepest2()));
+    const auto share = static_cast<float>(detail::fading(largest(total_), 16 * contact_.deepest2(count_)));
     if (!(share < 1)) return;
     const std::size_t n = field_->stride();
     Eigen::Map<Eigen::ArrayXf>(total_.data(), static_cast<Eigen::Index>(total_.size())) *= share;

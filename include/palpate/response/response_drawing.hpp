@@ -41,8 +41,7 @@ class ResponseDrawing {
     const std::size_t n = field_->stride();
     for (std::size_t v = 0; v < n; v += lane_size)
       store_by_fours(&total_[4 * v], lane_at(total + v), lane_at(total + n + v), lane_at(total + 2 * n + v));
-    double d2 = 0;
-    for (std::size_t c = 0; c < contacts.count; ++c) d2 = (std::max)(d2, contacts.contact[c].d.squaredNorm());
+    const double d2 = contacts.contact.deepest2(contacts.count);
     const auto bend_reach = static_cast<float>(2.5 * field_->mesh().length);
     bends_.read(total, contacts.own, n, contacts.near, contacts.count, bend_reach);
     bends_.raise({field_->coordinate(0), field_->coordinate(1), field_->coordinate(2)}, total_.data(),

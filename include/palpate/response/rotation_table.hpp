@@ -13,8 +13,6 @@
 #include <palpate/response/near_field.hpp>
 #include <palpate/response/solve_mesh.hpp>
 
-#include <algorithm>
-
 namespace palpate {
 
 class RotationTable {
@@ -35,8 +33,8 @@ class RotationTable {
       const Vec3<double> area = (mesh.vertices[t[1]] - x).cross(mesh.vertices[t[2]] - x);
       for (std::size_t c = 0; c < 3; ++c) {
         normal[t[c]] += area;
-        for (const std::uint32_t v : {t[(c + 1) % 3], t[(c + 2) % 3]})
-          if (std::find(ring[t[c]].begin(), ring[t[c]].end(), v) == ring[t[c]].end()) ring[t[c]].push_back(v);
+        detail::add_once(ring[t[c]], t[(c + 1) % 3]);
+        detail::add_once(ring[t[c]], t[(c + 2) % 3]);
       }
     }
     frame_.assign(9 * stride, 0.f);

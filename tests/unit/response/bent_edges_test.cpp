@@ -120,8 +120,8 @@ TEST_CASE(
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     for (std::size_t i = 0; i < 3; ++i) CHECK(raised[4 * v + i] == field[4 * v + i]);
 
-  std::vector<float> wild(
-      field.size());  // nothing is raised by more than half of what is asked for, nor is it without
+  // Never by more than half of what is allowed, and by nothing where nothing is.
+  std::vector<float> wild(field.size());
   for (std::size_t i = 0; i < wild.size(); ++i) wild[i] = i % 7 == 0 ? 100.f : -100.f;
   for (const float most : {0.02f, 0.f}) {
     bent.raise(vertices, wild.data(), {contact_at(V(1, 1, 1))}, 1, 0.06f, most, raised.data());
