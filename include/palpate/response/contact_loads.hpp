@@ -7,8 +7,8 @@
 /// energy knows. And what spreads and turns the surface beneath the patch is held back by the half-space's loads for that, as far as
 /// PatchMoments does not: a narrow one's moments of w are w's slopes.
 ///
-/// Second order: the load has moved with the tool; far away that is the moment of the force F by the way d. Near by, a factor of d_n
-/// is the local indentation delta_n = C_near P, which is less where the body as a whole gives way. docs/accuracy.md.
+/// Second order: the load has moved with the tool; far away that is a double force by d_n and the moment of the force by w, the way
+/// that the body as a whole gives. Near by, a factor of d_n is the local indentation delta_n = C_near P. docs/response_field.md.
 
 #include <palpate/response/contact_coupling.hpp>
 #include <palpate/response/contact_types.hpp>

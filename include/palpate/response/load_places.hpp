@@ -6,7 +6,7 @@
 ///
 /// Loads are put at every node, and at the middle of every free edge that is longer than half its distance D to the next free
 /// crease: w changes with the load's place over D, and between places it is interpolated linearly. Without the middles a contact
-/// between two nodes next to a crease is three times as wrong as one at a node (docs/accuracy.md).
+/// between two nodes next to a crease is three times as wrong as one at a node (docs/response_field.md).
 
 #include <palpate/response/solve_mesh.hpp>
 #include <palpate/response/touch_mesh.hpp>

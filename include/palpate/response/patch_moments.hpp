@@ -18,7 +18,7 @@
 /// A patch of less than an edge of the solve mesh has none of it, one of one and a half edges all; in between a share; the rest is
 /// held by the slopes of w (ContactSystem::press). The more of a patch lies on what is held the less: from half on none. Of one contact
 /// alone, gradually (ContactSystem::loosen): of what several do to each other's moments only the slopes are known. Nothing is fitted.
-/// docs/accuracy.md.
+/// docs/response_field.md.
 
 #include <palpate/beam/cholesky.hpp>
 #include <palpate/response/contact_near.hpp>
