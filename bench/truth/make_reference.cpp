@@ -4,9 +4,9 @@
 ///
 ///     make_reference NAME CASE_DIR fineness     without arguments: the names
 ///
-/// Stuck flat patches on rubber, pressed by their depth. Needs gmsh as a command. Writes what truth_cases reads into CASE_DIR:
+/// Stuck flat patches on rubber, pressed by their depth, or a frictionless ball. Needs gmsh as a command. Writes what truth_cases reads into CASE_DIR:
 /// meta.json, surface.obj, vertices.csv, displacement.csv, displacement_linear.csv (small strain), force.csv, force_linear.csv.
-/// Vertices: the elements' nodes on the surface. fineness: patch radius over edges at its rim.
+/// Vertices: the elements' nodes on the surface. fineness: patch radius over edges at its rim. Of a ball there is nothing linear.
 
 #include "truth/rubber.hpp"
 
@@ -24,6 +24,7 @@ struct Case {
   double E, nu;  // [MPa], -
   std::vector<Patch> patches;
   std::vector<double> depths;  // [mm]
+  bool ball = false;           // a frictionless ball of the patch's radius instead
 };
 
 // `lean` degrees off the normal, towards `aside`.
@@ -75,6 +76,25 @@ std::vector<Case> cases() {
       {"S", box(90, 28, 100, true), 1, 0.49, {on_top(0, 28, 0, 5)}, {1, 2, 4, 6}},
       {"A", A, 1, 0.49, {on_flank(A.size, 50, 6, 30)}, {1, 2, 4, 6, 9}},
       {"D", box(100, 60, 80), 1, 0.49, {on_top(-20, 60, 0, 6), on_top(22, 60, 0, 8)}, {1, 2, 4, 6, 9}},
+      {"ball_t8", ellipsoid_t1, 1.5, 0.49, {on_top(0, 40, 0, 15)}, {0.5, 1, 2, 4, 8, 12}, true},
+      {"ball_half_space",
+       box(200, 100, 200, true),
+       1,
+       0.49,
+       {on_top(0, 100, 0, 10)},
+       {0.5, 1, 2, 3, 4, 5},
+       true},
+      {"ball_half_space3",
+       box(200, 100, 200, true),
+       1,
+       0.3,
+       {on_top(0, 100, 0, 10)},
+       {0.5, 1, 2, 3, 4, 5},
+       true},
+      {"ball_block", box(80, 50, 60, true), 1, 0.49, {on_top(0, 50, 0, 12)}, {0.5, 1, 2, 4, 8}, true},
+      {"ball_edge", box(80, 50, 60), 1, 0.49, {on_top(28, 50, 0, 10)}, {0.5, 1, 2, 4, 6}, true},
+      {"ball_slab", box(120, 30, 100, true), 1, 0.49, {on_top(0, 30, 0, 15)}, {0.5, 1, 2, 4, 7}, true},
+      {"ball_flank", a, 1, 0.49, {on_flank(a.size, 40, 10)}, {0.5, 1, 2, 4, 7}, true},
   };
 }
 
@@ -84,8 +104,9 @@ struct Surface {
   std::vector<V> sign;    // mirrored along an axis: -1
   std::vector<V> place;   // [mm]
   std::vector<std::array<int, 3>> triangles;
-  std::vector<double> area;  // [mm^2]
-  std::vector<char> outer;   // by node: is it on the surface, mirrors aside?
+  std::vector<double> area;               // [mm^2]
+  std::vector<char> outer;                // by node: is it on the surface, mirrors aside?
+  std::vector<std::array<int, 6>> faces;  // the elements', not mirrored
 };
 Surface surface_of(const Tetrahedra& mesh, const Body& body) {
   constexpr int faces[4][6] = {
@@ -113,6 +134,7 @@ Surface surface_of(const Tetrahedra& mesh, const Body& body) {
     };
     if ((body.half_x && on_mirror(0)) || (body.half_z && on_mirror(2))) continue;
     for (int i : n) s.outer[i] = 1;
+    s.faces.push_back(n);
     for (int mx = 0; mx <= body.half_x; ++mx)
       for (int mz = 0; mz <= body.half_z; ++mz) {
         std::array<int, 6> vertex;
@@ -160,7 +182,7 @@ std::vector<int> regions(const Case& c, const Tetrahedra& mesh, const Surface& s
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
     if (!surface.outer[n]) continue;
     if (mesh.nodes[n].y() <= held) region[n] = -1;
-    for (std::size_t p = 0; p < c.patches.size(); ++p)
+    for (std::size_t p = 0; p < c.patches.size() && !c.ball; ++p)
       if ((mesh.nodes[n] - c.patches[p].place).norm() <= c.patches[p].radius * (1 + 1e-4))
         region[n] = static_cast<int>(p) + 1;
   }
@@ -192,19 +214,26 @@ void write_meta(const Case& c, const std::vector<double>& reached, const std::st
     patches += text(patches.empty() ? "" : ",\n", "{\"centre_m\": ", list(p.place / 1e3),
                     ", \"radius_m\": ", p.radius / 1e3, ", \"direction\": ", list(p.direction),
                     ", \"inward_normal\": ", list(-p.normal), ", \"depth_factor\": ", p.factor, '}');
+  const Patch& first = c.patches[0];
+  const std::string ball = text("\"indenter\": {\"radius_m\": ", first.radius / 1e3,
+                                ", \"first_touch_point_m\": ", list(first.place / 1e3),
+                                ", \"inward_normal\": ", list(-first.normal), "},\n");
   for (double depth : reached) depths += text(depths.empty() ? "" : ", ", depth / 1e3);
   std::string held;
-  if (c.body.kind == Body::ellipsoid) held = text("\"fixed\": {\"y_max_m\": ", c.body.held / 1e3, "},\n");
-  std::fputs(text("\"material\": {\"E_Pa\": ", c.E * 1e6, ", \"nu\": ", c.nu, "},\n", held,
-                  "\"patches\": [\n", patches, "],\n\"depths_m\": [", depths, "]\n}\n")
-                 .c_str(),
-             meta.file);
+  if (c.body.kind == Body::ellipsoid)
+    held = text("\"fixed\": {\"y_max_m\": ", c.body.held / 1e3,
+                "},\n\"semi_axes_m\": ", list(c.body.size / 1e3), ",\n");
+  std::fputs(
+      text("\"material\": {\"E_Pa\": ", c.E * 1e6, ", \"nu\": ", c.nu, "},\n", held,
+           c.ball ? ball : text("\"patches\": [\n", patches, "],\n"), "\"depths_m\": [", depths, "]\n}\n")
+          .c_str(),
+      meta.file);
 }
 
 void make(const Case& c, const std::string& folder, double fineness) {
   std::filesystem::create_directories(folder);
   const std::string geo = folder + "/body.geo", msh = folder + "/body.msh";
-  { File script(geo, GmshScript(c.body, c.patches, fineness)().c_str()); }
+  { File script(geo, GmshScript(c.body, c.patches, c.ball, fineness)().c_str()); }
   if (std::system(("gmsh -3 -v 2 '" + geo + "' -o '" + msh + "'").c_str()) != 0)
     throw std::runtime_error("gmsh failed on " + geo);
   const Tetrahedra mesh = read_msh(msh);
@@ -237,7 +266,7 @@ void make(const Case& c, const std::string& folder, double fineness) {
       std::fprintf(shape.file, "%.9g,%zu,%.9g,%.9g,%.9g\n", depth / 1e3, v, u.x(), u.y(), u.z());
     }
     for (std::size_t p = 0; p < c.patches.size(); ++p) {
-      V F = V::Zero();
+      V F = c.ball ? rubber.sphere_force() : V(V::Zero());
       for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
         if (region[n] == static_cast<int>(p) + 1)
           F += rubber.forces().segment<3>(3 * static_cast<Eigen::Index>(n));
@@ -251,7 +280,7 @@ void make(const Case& c, const std::string& folder, double fineness) {
     }
   };
   const char *shape_head = "depth_m,vertex,ux,uy,uz\n", *force_head = "depth_m,patch,Fx,Fy,Fz\n";
-  {
+  if (!c.ball) {
     const Eigen::VectorXd rest = rubber.state();
     rubber.step(motion(1), true);
     File shape(folder + "/displacement_linear.csv", shape_head),
@@ -260,13 +289,29 @@ void make(const Case& c, const std::string& folder, double fineness) {
     rubber.reset(rest);
   }
   File shape(folder + "/displacement.csv", shape_head), force(folder + "/force.csv", force_head);
-  const double smallest = c.patches[0].radius / 50;
-  double at = 0, stride = c.patches[0].radius / 4;
+  RigidSphere sphere{V::Zero(), c.patches[0].radius, 100 * c.E, {}};
+  for (const auto& face : surface.faces)
+    if (c.ball && std::all_of(face.begin(), face.end(), [&](int n) {
+          return region[n] == 0 && (mesh.nodes[n] - c.patches[0].place).norm() < 1.3 * sphere.radius;
+        }))
+      sphere.faces.push_back(face);
+  Eigen::VectorXd speed = Eigen::VectorXd::Zero(rubber.state().size());  // by depth, of the last step
+  const auto press = [&](double from, double by) {
+    if (!c.ball) return rubber.step(motion(by));
+    const Eigen::VectorXd before = rubber.state();
+    sphere.centre = c.patches[0].place + (sphere.radius - from - by) * c.patches[0].normal;
+    if (!rubber.settle(sphere, before + by * speed)) return false;
+    speed = (rubber.state() - before) / by;
+    return true;
+  };
+  const double smallest = sphere.radius / (c.ball ? 2000 : 50), longest = sphere.radius / (c.ball ? 12 : 4);
+  double at = 0, stride = longest;
   std::vector<double> reached;
   for (double depth : c.depths) {
     while (at < depth && stride > smallest) {
       const double d = (std::min)(stride, depth - at);
-      if (rubber.step(motion(d))) {
+      if (press(at, d)) {
+        stride = (std::min)(longest, c.ball ? 1.5 * d + longest / 8 : stride);
         at = depth - at - d < 1e-9 ? depth : at + d;
         std::printf("  %.3f mm, least J %.3f\n", at, rubber.least_volume_ratio());
       } else {

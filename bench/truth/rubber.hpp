@@ -60,6 +60,13 @@ class SymmetricEquations {
   std::vector<int> rows_, columns_;
 };
 
+/// A rigid frictionless sphere that faces of the body (six nodes each) may not enter: a penalty holds them out.
+struct RigidSphere {
+  V centre;
+  double radius = 0, penalty = 0;  ///< [mm], [MPa/mm]
+  std::vector<std::array<int, 6>> faces;
+};
+
 /// A body some of whose displacements are prescribed. Unknowns: three displacements [mm] per node, then a pressure [MPa] per corner.
 class Rubber {
  public:
@@ -124,6 +131,24 @@ class Rubber {
     x_ = before;
     return false;
   }
+  /// Finds equilibrium with a sphere, first from `guess`, then from the state by softer penalties. False, and nothing changed, where neither gets
+  /// there. Faces are those of the first call.
+  bool settle(const RigidSphere& sphere, const Eigen::VectorXd& guess) {
+    const Eigen::VectorXd before = x_;
+    sphere_ = sphere;
+    x_ = guess;
+    if (settle_once(1e-7, 12)) return true;
+    x_ = before;
+    for (double share : {0.03, 0.2, 1.0}) {
+      sphere_.penalty = share * sphere.penalty;
+      if (settle_once(share < 1 ? 1e-3 : 1e-7, 25)) continue;
+      x_ = before;
+      return false;
+    }
+    return true;
+  }
+  /// Force of the sphere on the body [N], as of the last step.
+  const V& sphere_force() const { return sphere_force_; }
   /// Back to a state that was one of equilibrium.
   void reset(const Eigen::VectorXd& state) { x_ = state; }
   /// The least J at any integration point of the state.
@@ -221,6 +246,83 @@ class Rubber {
     return true;
   }
 
+  // Newton's method, to steps of less than `tolerance` of the radius.
+  bool settle_once(double tolerance, int most) {
+    for (int iteration = 0; iteration < most; ++iteration) {
+      Eigen::VectorXd b;
+      if (!assemble(nullptr, b) || !std::isfinite(b.norm())) return false;
+      if (system_ == nullptr) system_ = std::make_unique<SymmetricEquations>(equations_, rows_, columns_);
+      system_->solve(values_, b);
+      double largest = 0;
+      for (int i = 0; i < x_.size(); ++i) {
+        const double d = equation_[i] >= 0 ? b[equation_[i]] : 0;
+        x_[i] += d;
+        if (i < 3 * static_cast<int>(mesh_.nodes.size())) largest = (std::max)(largest, std::abs(d));
+      }
+      if (largest < tolerance * sphere_.radius) return assemble(nullptr, b);
+    }
+    return false;
+  }
+  // The sphere's penalty over undeformed faces, seven points each, exact to the fifth degree.
+  void add_sphere(Eigen::VectorXd& b, bool first) {
+    constexpr double r15 = 3.872983346207417, a[2] = {(6 - r15) / 21, (6 + r15) / 21},
+                     wa[2] = {(155 - r15) / 1200, (155 + r15) / 1200};
+    std::array<std::array<double, 4>, 7> points{{{1. / 3, 1. / 3, 1. / 3, 0.225}}};
+    for (int k = 0; k < 2; ++k)
+      for (int i = 0; i < 3; ++i) {
+        points[1 + 3 * k + i] = {a[k], a[k], a[k], wa[k]};
+        points[1 + 3 * k + i][i] = 1 - 2 * a[k];
+      }
+    sphere_force_.setZero();
+    for (const auto& face : sphere_.faces) {
+      Eigen::Matrix<double, 18, 18> k = Eigen::Matrix<double, 18, 18>::Zero();
+      Eigen::Matrix<double, 18, 1> r = Eigen::Matrix<double, 18, 1>::Zero();
+      for (const auto& [l0, l1, l2, weight] : points) {
+        const std::array<double, 6> shape{l0 * (2 * l0 - 1), l1 * (2 * l1 - 1), l2 * (2 * l2 - 1),
+                                          4 * l0 * l1,       4 * l1 * l2,       4 * l2 * l0},
+            by1{1 - 4 * l0, 4 * l1 - 1, 0, 4 * (l0 - l1), 4 * l2, -4 * l2},
+            by2{1 - 4 * l0, 0, 4 * l2 - 1, -4 * l1, 4 * l1, 4 * (l0 - l2)};
+        V from = -sphere_.centre, t1 = V::Zero(), t2 = V::Zero();
+        for (int i = 0; i < 6; ++i) {
+          const V& p = mesh_.nodes[face[i]];
+          from += shape[i] * (p + x_.segment<3>(3 * face[i]));
+          t1 += by1[i] * p;
+          t2 += by2[i] * p;
+        }
+        const double distance = from.norm(), inside = sphere_.radius - distance;
+        if (!(inside > 0)) continue;
+        const V n = from / distance;
+        const double w = sphere_.penalty * 0.5 * t1.cross(t2).norm() * weight;
+        sphere_force_ += w * inside * n;
+        const Eigen::Matrix3d nn = n * n.transpose(),
+                              stiffness = w * (nn - inside / distance * (Eigen::Matrix3d::Identity() - nn));
+        for (int i = 0; i < 6; ++i) {
+          r.segment<3>(3 * i) -= w * inside * shape[i] * n;
+          for (int j = 0; j < 6; ++j) k.block<3, 3>(3 * i, 3 * j) += shape[i] * shape[j] * stiffness;
+        }
+      }
+      std::array<int, 18> unknowns;
+      for (int i = 0; i < 18; ++i) unknowns[i] = 3 * face[i / 3] + i % 3;
+      add(unknowns, r, k, first, b);
+    }
+  }
+  // An element's part of the equations.
+  template <class Unknowns, class Vector, class Matrix>
+  void add(const Unknowns& unknowns, const Vector& r, const Matrix& k, bool first, Eigen::VectorXd& b) {
+    for (int i = 0; i < r.size(); ++i) {
+      const int row = equation_[unknowns[i]];
+      if (row < 0) continue;
+      b[row] -= r[i];
+      for (int j = 0; j <= i; ++j) {
+        const int column = equation_[unknowns[j]];
+        if (column < 0) continue;
+        values_.push_back(k(i, j));
+        if (first)
+          rows_.push_back((std::max)(row, column) + 1), columns_.push_back((std::min)(row, column) + 1);
+      }
+    }
+  }
+
   // b = -(forces of x_ and of the increment's prescribed part), and the tangent's values.
   bool assemble(const Eigen::VectorXd* increment, Eigen::VectorXd& b) {
     const bool first = rows_.empty();
@@ -237,19 +339,9 @@ class Rubber {
         for (int i = 0; i < 30; ++i)
           if (equation_[unknowns_[e][i]] < 0 && (*increment)[unknowns_[e][i]] != 0)
             r += k.col(i) * (*increment)[unknowns_[e][i]];
-      for (int i = 0; i < 34; ++i) {
-        const int row = equation_[unknowns_[e][i]];
-        if (row < 0) continue;
-        b[row] -= r[i];
-        for (int j = 0; j <= i; ++j) {
-          const int column = equation_[unknowns_[e][j]];
-          if (column < 0) continue;
-          values_.push_back(k(i, j));
-          if (first)
-            rows_.push_back((std::max)(row, column) + 1), columns_.push_back((std::min)(row, column) + 1);
-        }
-      }
+      add(unknowns_[e], r, k, first, b);
     }
+    add_sphere(b, first);
     return true;
   }
   // Forces by the tangent at `state` for what x_ is more.
@@ -276,6 +368,8 @@ class Rubber {
   std::vector<double> values_;
   std::unique_ptr<SymmetricEquations> system_;
   double least_J_ = 1;
+  RigidSphere sphere_;
+  V sphere_force_ = V::Zero();
 };
 
 }  // namespace bench

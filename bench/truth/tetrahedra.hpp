@@ -41,15 +41,20 @@ std::string text(const Parts&... parts) {
   return out.str();
 }
 
-/// A script for gmsh. Edges: at a patch's rim radius / fineness, growing by a third of the distance, at most a seventh of the body.
+/// A script for gmsh. Edges: at a patch's rim radius / fineness, growing by a third of the distance, at most a seventh of the body. A ball's
+/// contact grows: at a seventh of its radius from the middle 0.56 radius / fineness, growing by a ninth.
 class GmshScript {
  public:
-  GmshScript(const Body& body, const std::vector<Patch>& patches, double fineness)
+  GmshScript(const Body& body, const std::vector<Patch>& patches, bool ball, double fineness)
       : body_(body), far_(10 * body.size.maxCoeff()) {
     script_ = "SetFactory(\"OpenCASCADE\");\n";
     add_body();
-    cut(patches);
-    for (const Patch& p : patches) add_size(p.radius / fineness, to_rim(p));
+    cut(ball ? std::vector<Patch>{} : patches);
+    for (Patch p : patches) {
+      const double least = (ball ? 0.56 : 1) * p.radius / fineness;
+      if (ball) p.radius /= 7;
+      add_size(least, to_rim(p), ball ? 0.115 : 0.33);
+    }
     add_sizes_of_body();
     script_ +=
         text("Background Field = ", fields_, ";\n",
@@ -92,12 +97,13 @@ class GmshScript {
     if (body_.kind == Body::ellipsoid)
       add(text("Box(", tag, ") = {", list(V::Constant(-far_)), ", ",
                list(V(2 * far_, far_ + body_.held, 2 * far_)), "};\n"));
-    script_ += "BooleanFragments{Volume{body()}; Delete;}{Volume{" + tools + "}; Delete;}\n";
+    if (!tools.empty())
+      script_ += "BooleanFragments{Volume{body()}; Delete;}{Volume{" + tools + "}; Delete;}\n";
   }
-  void add_size(double least, const std::string& distance) {
+  void add_size(double least, const std::string& distance, double growth = 0.33) {
     ++fields_;
-    script_ += text("Field[", fields_, "] = MathEval;\nField[", fields_, "].F = \"", least, " + 0.33 * ",
-                    distance, "\";\n");
+    script_ += text("Field[", fields_, "] = MathEval;\nField[", fields_, "].F = \"", least, " + ", growth,
+                    " * ", distance, "\";\n");
   }
   // The distance from the circle around a patch, in its tangent plane.
   static std::string to_rim(const Patch& p) {

@@ -49,10 +49,12 @@ int main(int argc, char** argv) {
   std::vector<double> u(3 * mesh.vertices.size());
   const std::size_t ball = meta.find("\"indenter\"");
   if (ball != std::string::npos) {
-    // k1 + k2 of an ellipsoid: divergence of the unit normal.
-    const V place = vector(numbers(meta, "first_touch_point_m", ball)), axes = vector(numbers(meta, "semi_axes_m"));
-    const V weight = axes.array().square().inverse(), g = place.cwiseProduct(weight);
-    const double curvature = (weight.sum() - g.dot(weight.cwiseProduct(g)) / g.squaredNorm()) / g.norm();
+    const V place = vector(numbers(meta, "first_touch_point_m", ball));
+    double curvature = 0;
+    if (const auto axes = numbers(meta, "semi_axes_m"); !axes.empty()) {  // k1 + k2 of an ellipsoid: divergence of the unit normal
+      const V weight = vector(axes).array().square().inverse(), g = place.cwiseProduct(weight);
+      curvature = (weight.sum() - g.dot(weight.cwiseProduct(g)) / g.squaredNorm()) / g.norm();
+    }
     for (double depth : numbers(meta, "depths_m")) {
       const V normal = -vector(numbers(meta, "inward_normal", ball));
       const auto F = tick.solve(palpate::SphereContact<double>{place, normal, numbers(meta, "radius_m", ball).at(0), curvature, depth});

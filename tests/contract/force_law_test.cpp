@@ -64,10 +64,17 @@ struct PowerLawExample : DuffingExample<1> {
   }
 };
 
-// C in nanometres per newton: 0 a half-space, 2e5 with as much depth in the body as in the contact, 1e8 a spring.
+// C in nanometres per newton: 0 a half-space, 2e5 with as much depth in the body as in the contact, 1e8 a spring; -2e4 a layer, -5e4 one
+// that is stiffer than the series has numbers for.
 template <int Compliance>
 struct HertzExample : DuffingExample<1> {
   static constexpr bool exact_units = false;  // cbrt() promises nothing about powers of 2
+  template <class S>
+  static std::vector<S> kinks() {
+    if (Compliance >= 0) return {};
+    const S root = S(0.3L) / (S(9.7e-5L) * S(-Compliance));  // C k sqrt(D) = -0.3
+    return {root * root};
+  }
   template <class S, class T>
   static HertzForce<T> make(T length, T force) {
     const T k = S(9.7e4), C = S(1e-9) * S(Compliance);
@@ -141,6 +148,8 @@ PALPATE_FORCE_LAW_SUITE(PowerLawExample<4>);
 PALPATE_FORCE_LAW_SUITE(HertzExample<0>);
 PALPATE_FORCE_LAW_SUITE(HertzExample<200000>);
 PALPATE_FORCE_LAW_SUITE(HertzExample<100000000>);
+PALPATE_FORCE_LAW_SUITE(HertzExample<-20000>);
+PALPATE_FORCE_LAW_SUITE(HertzExample<-50000>);
 PALPATE_FORCE_LAW_SUITE(TabulatedExample);
 PALPATE_FORCE_LAW_SUITE(SaturatedExample<DuffingExample<1>>);
 PALPATE_FORCE_LAW_SUITE(SaturatedExample<PowerLawExample<3>>);

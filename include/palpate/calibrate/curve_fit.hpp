@@ -152,7 +152,7 @@ template <std::size_t N, class Law>
     const auto i = Eigen::Index(k);
     fit.value[k] = p[i];
     fit.at_bound[k] = p[i] <= low[k] || p[i] >= high[k];
-    open += fit.at_bound[k] ? 0 : 1;
+    open += fit.at_bound[k] ? 0u : 1u;
   }
   fit.rms = std::sqrt(now / weights);
   fit.relative_rms = std::sqrt(now / forces);

@@ -14,7 +14,7 @@ struct HertzFit {
 };
 
 /// D = h (F/F_m)^(2/3) + b F/F_m over 0 < F <= F_m, the largest force among the points, with the contact's depth h > 0 and the
-/// body's b >= 0; residuals are of the force. Reports what fit_curve reports, and points without depth > 0.
+/// body's b, < 0 for a layer on something stiff; residuals are of the force. Reports what fit_curve reports, and points without depth > 0.
 [[nodiscard]] inline HertzFit fit_hertz(std::span<const CurvePoint> points,
                                         const CurveFitParams& params = {}) {
   double deepest = 0, strongest = 0;
@@ -35,7 +35,7 @@ struct HertzFit {
       [&known](const std::array<double, 2>& y, double depth) {
         return HertzForce<double>(known(y)).force(depth);
       },
-      {deepest / 2, deepest / 2}, {1e-3 * deepest, 0}, {2 * deepest, 2 * deepest}, params);
+      {deepest / 2, deepest / 2}, {1e-3 * deepest, -deepest / 2}, {2 * deepest, 2 * deepest}, params);
   out.params = known(out.fit.value);
   return out;
 }

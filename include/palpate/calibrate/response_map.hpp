@@ -87,7 +87,8 @@ template <SampledBody B>
                                                                .normal = at.normal,
                                                                .radius = params.radius,
                                                                .curvature = curvature,
-                                                               .depth = params.depth}));
+                                                               .depth = params.depth}),
+                     {.worst_rms = 1});  // within the fixed region curves have kinks: reported, not refused
   });
 }
 

@@ -22,8 +22,9 @@ constexpr std::size_t place_nodes = 3 * TouchMesh::most_parts;
 struct PlacedContact {
   Vec3<double> x, m, d;  ///< m: unit normal into the body
   double a = 0;
-  double least = 0;  ///< smaller compliance of the half-space, times mu
-  double ball = 0;   ///< radius of the sphere; 0: stuck patch
+  double least = 0;   ///< smaller compliance of the half-space, times mu
+  double ball = 0;    ///< radius of the sphere; 0: stuck patch
+  double spread = 0;  ///< of a sphere's contact along the surface, at its middle, by r
   TouchPlace place;
   FixedVector<PatchWeight, place_nodes> nodes;  ///< solved ones at the place
   double carried = 1;                           ///< of the force, not by what is held
@@ -40,7 +41,7 @@ struct PlacedContact {
   Vec3<double> tilt = Vec3<double>::Zero();     ///< / mu
   Vec3<double> turn = Vec3<double>::Zero();     ///< its part of second order
   Vec3<double> push = Vec3<double>::Zero();
-  double kept = 0;  ///< of second order
+  double kept = 0;                 ///< of second order
   double sag = 0;                  ///< how deep the patch's edge lies below its plane, at most
   PatchMoments moments;            ///< of a wide patch
   Moments held = Moments::Zero();  ///< its loads / mu

@@ -12,6 +12,9 @@
 ///     q_n = (d_n delta_n/a) sqrt(1 - s^-2) (n_4 s^-4 + n_6 s^-6),   q_t = beta^2 (delta_t . e_p) t sqrt(1 - s^-2) s^-3
 /// r_4 to n_6 and t are linear in beta (DeepFactor); beta is held at 2, for q_t at 1. e is such that all terms add up to nothing at the
 /// patch's edge; they do so within, too.
+///
+/// A frictionless sphere: Hertz's field; a double force, of which outside the contact (1 - s^-6) is drawn, over what Hertz's weight makes of
+/// it on the surface, about 1 + 0.9 s^-2 + 0.7 s^-4; within, (1 - (r/a)^2) r `radial` along the surface instead.
 
 #include <palpate/response/near_field.hpp>
 
@@ -47,17 +50,17 @@ struct Axes {
 using Lane3 = Axes<Lane>;
 
 struct ContactNear {
-  Vec3<float> place, m;              ///< m: unit normal into the body
-  Vec3<float> along;                 ///< tangential part of the force / (4 pi mu)
-  Vec3<float> tilt;                  ///< moment of tilt / (4 pi mu)
-  Vec3<float> turn;                  ///< slope at the patch's edge that is taken back outside, times s^-7
-  Mat3<float> shear;                 ///< in the patch's plane / (4 pi mu)
-  Vec3<float> push;                  ///< taken back outside the patch, times s^-8
-  float normal = 0;                  ///< normal part of the force / (4 pi mu)
-  float dipole = 0;                  ///< radial double force / (4 pi mu)
-  float radial = 0;                  ///< k_r d_n delta_n / a
-  float radial_4 = 0, radial_6 = 0;  ///< r_4 d_n delta_n / a^2, r_6 likewise
-  float normal_4 = 0, normal_6 = 0;  ///< n_4 d_n delta_n / a, n_6 likewise
+  Vec3<float> place, m;  ///< m: unit normal into the body
+  Vec3<float> along;     ///< tangential part of the force / (4 pi mu)
+  Vec3<float> tilt;      ///< moment of tilt / (4 pi mu)
+  Vec3<float> turn;      ///< slope at the patch's edge that is taken back outside, times s^-7
+  Mat3<float> shear;     ///< in the patch's plane / (4 pi mu)
+  Vec3<float> push;      ///< taken back outside the patch, times s^-8
+  float normal = 0;      ///< normal part of the force / (4 pi mu)
+  float dipole = 0;      ///< radial double force / (4 pi mu)
+  float radial = 0;      ///< k_r d_n delta_n / a; of a sphere: along the surface, by r, at the middle
+  float radial_4 = 0, radial_6 = 0;         ///< r_4 d_n delta_n / a^2, r_6 likewise
+  float normal_4 = 0, normal_6 = 0;         ///< n_4 d_n delta_n / a, n_6 likewise
   Vec3<float> slide = Vec3<float>::Zero();  ///< t beta^2 delta_t / a^2
   float rim2 = 1;                           ///< e^2
   float a = 1, nu = 0.5f;
@@ -90,9 +93,18 @@ struct ContactNear {
     const V depth = larger(z - smaller(z * near2, splat<V>(sag)), V{});
     const Disc<V, float> disc(p2, depth, a);
     if (ball) {
-      const auto u = disc.hertz(normal, nu);
-      return {u.in_plane * px + u.normal * m.x(), u.in_plane * py + u.normal * m.y(),
-              u.in_plane * pz + u.normal * m.z()};
+      auto u = disc.hertz(normal, nu);
+      if (second) {
+        const auto d = disc.double_force(nu),
+                   t = disc.flat(0, px * along.x() + py * along.y() + pz * along.z(), nu);
+        const V near4 = near2 * near2, share = (1.f - near4 * near2) / (1.f + 0.9f * near2 + 0.7f * near4);
+        u.in_plane += t.in_plane + dipole * share * d.in_plane + radial * larger(1.f - r2 / (a * a), V{});
+        u.normal += t.normal + dipole * share * d.normal;
+        u.along = t.along;
+      }
+      return {u.in_plane * px + u.normal * m.x() + u.along * along.x(),
+              u.in_plane * py + u.normal * m.y() + u.along * along.y(),
+              u.in_plane * pz + u.normal * m.z() + u.along * along.z()};
     }
     const auto u = disc.flat(normal, px * along.x() + py * along.y() + pz * along.z(), nu);
     V in_plane = u.in_plane, down = u.normal, turned_back{};

@@ -43,6 +43,10 @@ class ContactSystem {
 
   /// As they are for this body's nu.
   [[nodiscard]] const SecondOrder& constants() const noexcept { return settings_.constants; }
+  /// Null without second order.
+  [[nodiscard]] const SecondOrder* second_order() const noexcept {
+    return settings_.second_order ? &settings_.constants : nullptr;
+  }
   [[nodiscard]] Contact& operator[](std::size_t c) noexcept { return contact_[c]; }
   [[nodiscard]] const Contact& operator[](std::size_t c) const noexcept { return contact_[c]; }
   /// Largest d^2 of the first `count` contacts.
@@ -66,7 +70,7 @@ class ContactSystem {
       if (count > 1) bend(count);
     bool any = false;
     for (std::size_t i = 0; i < count; ++i) {
-      press(*field_, settings_.second_order ? &settings_.constants : nullptr, contact_[i]);
+      press(*field_, second_order(), contact_[i]);
       any = any || contact_[i].dipole != 0;
     }
     if (any) solve_once(count);
@@ -75,7 +79,7 @@ class ContactSystem {
   }
 
   void locate(Contact& c) const noexcept {
-    c.dipole = c.dn2 = c.beta = c.kept = 0;
+    c.dipole = c.spread = c.dn2 = c.beta = c.kept = 0;
     c.delta_t.setZero();
     c.tilt.setZero();
     c.turn.setZero();
@@ -189,7 +193,7 @@ class ContactSystem {
     near.push = c.push.template cast<float>();
     near.dipole = static_cast<float>(scale * dipole);
     const double dn2 = c.dn2 / c.a, known = (std::min)(c.beta, 1.0);
-    near.radial = static_cast<float>(k.radial * dn2);
+    near.radial = static_cast<float>(c.ball > 0 ? c.spread : k.radial * dn2);
     near.radial_4 = static_cast<float>(k.radial_4.at(c.beta) * dn2 / c.a);
     near.radial_6 = static_cast<float>(k.radial_6.at(c.beta) * dn2 / c.a);
     near.normal_4 = static_cast<float>(k.normal_4.at(c.beta) * dn2);
@@ -200,7 +204,7 @@ class ContactSystem {
     near.sag = static_cast<float>(c.sag);
     near.grip = static_cast<float>(c.grip);
     near.nu = static_cast<float>(nu);
-    near.second = dipole != 0;
+    near.second = dipole != 0 || c.ball > 0;
     near.tilted = tilt.squaredNorm() > 0;
     near.ball = c.ball > 0;
     return near;

@@ -47,8 +47,8 @@ struct DeepFactor {
 /// Constants of second order in depth and more, for a stuck patch on neo-Hookean rubber; depth <= 2 a. They are those of nu = 1/2;
 /// `at(nu)` is what is used, below 0.3 that of 0.3. What is drawn near the patch (DeepFactor, contact_near.hpp) was fitted at nu = 0.49 on
 /// finite elements of a half-space alone, pressed normally and askew; the rest on pushes into a cube, a block, a wall and two ellipsoids, but
-/// `turned` and `crossed` on all references of docs/accuracy.md; the change with nu on one normal and one skew push at 0.3. Rounded,
-/// used for every body.
+/// `turned` and `crossed` on all references of docs/accuracy.md, those of a sphere on a half-space, a block, a slab and two ellipsoids; the
+/// change with nu on one normal and one skew push and one sphere at 0.3. Rounded, used for every body.
 /// delta_n, delta_t: local indentation, the displacement of a half-space by the same force, normal and tangential; w_n, w_t: the rest,
 /// by which the body as a whole gives way; s: slope of w_n under the patch. Without constants: the radial double force
 /// -nu / (1 - nu) F_n d_n, F_n at most twice the half-space's, and the force by which a body that spreads under the patch stiffens.
@@ -66,6 +66,11 @@ struct SecondOrder {
   double softening = 0.36;  ///< normal force -softening mu delta_n d_n; times 1 - 2.5 b
   double turned = 0.7;      ///< displacement by the rotation of w (turned_field.hpp); the same for every nu
   double crossed = 0.3;     ///< by w's and the near field's together; the same for every nu
+  // Of a frictionless sphere (pressed_sphere.hpp).
+  double ball_pull = 0.33;  ///< radial double force -ball_pull nu / (1 - nu) F d
+  double ball_spread =
+      0.15;  ///< displacement along the surface within the contact, ball_spread (1 - (r/a)^2) r d / R; times 1 + 1.7 b
+  double ball_softening = 0.06;  ///< of depth over the sphere's radius; times 1 - 7 b
 
   [[nodiscard]] SecondOrder at(double nu) const noexcept {
     const double held = nu > 0.3 ? nu : 0.3, b = 1 - 2 * held;
@@ -78,6 +83,8 @@ struct SecondOrder {
     out.slide = lessened(slide);
     out.drag *= 1 + 1.3 * b;
     out.softening *= less;
+    out.ball_spread *= 1 + 1.7 * b;
+    out.ball_softening *= 1 - 7 * b;
     return out;
   }
 };

@@ -6,8 +6,8 @@
 #include <palpate/core/status.hpp>
 #include <palpate/core/vertex_writer.hpp>
 #include <palpate/response/contact_system.hpp>
+#include <palpate/response/pressed_sphere.hpp>
 #include <palpate/response/response_drawing.hpp>
-#include <palpate/response/sphere_contact.hpp>
 #include <palpate/response/turned_field.hpp>
 
 namespace palpate {
@@ -63,29 +63,17 @@ class ResponseTick {
   /// One sphere alone; then `displace` writes its field.
   template <Real S>
   [[nodiscard]] SphereForce<double> solve(const SphereContact<S>& in) noexcept {
-    const double nu = field_->nu(), mu = field_->shear_modulus(), modulus = field_->E() / (1 - nu * nu);
-    const double ball = double(in.radius), depth = (std::max)(double(in.depth), 0.0);
     count_ = 0;
     if (!is_usable(ResponseContact<S>{in.place, in.normal, in.radius, Vec3<S>(in.normal * in.depth)}) ||
-        !is_finite(in.curvature))
+        !is_finite(in.curvature) || !(in.depth > S(0)))
       return {0, 0, 0};
-    if (!(depth > 0)) return {0, 0, 0};
-    const double R = 1 / (std::max)(1 / ball + 0.5 * double(in.curvature), 1e-3 / ball);
     auto& c = contact_[0];
     c.x = in.place.template cast<double>();
     c.m = -in.normal.template cast<double>().normalized();
-    c.d = depth * c.m;
-    c.ball = ball;
-    SphereForce<double> out{0, 0, std::sqrt(0.5 * R * (std::min)(depth, R))};
-    for (int pass = 0; pass < 2; ++pass) {  // C_w hardly depends on a
-      c.a = out.radius;
-      contact_.locate(c);
-      out = sphere_force(depth, R, modulus, c.m.dot(c.w * c.m) / mu);
-    }
-    c.a = (std::max)(out.radius, 1e-9);
-    c.P = out.force / mu * c.m;
+    c.d = double(in.depth) * c.m;
+    c.ball = double(in.radius);
     count_ = 1;
-    return out;
+    return detail::press_sphere(*field_, contact_, c, double(in.curvature));
   }
 
   /// Displacement of every bound vertex, after `solve`: component i of vertex v at out[v * stride + i].

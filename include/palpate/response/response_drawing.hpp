@@ -141,8 +141,8 @@ class ResponseDrawing {
     using Out = std::conditional_t<std::is_copy_assignable_v<Emit>, Emit, Emit&>;
     Out out = emit;  // a copy is in registers: what it writes might be any of it otherwise
     const float *const weight1 = display.b1(), *const weight2 = display.b2();
-    const ResponseDisplay::Span* const spans = display.spans().data();
-    for (std::size_t s = 0; s < display.spans().size(); ++s) {
+    const std::span<const ResponseDisplay::Span> spans(display.spans());
+    for (std::size_t s = 0; s < spans.size(); ++s) {
       if (is_close(display, s)) continue;
       const ResponseDisplay::Span span = spans[s];
       const Interpolant total = total_over(span.triangle);

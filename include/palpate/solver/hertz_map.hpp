@@ -16,7 +16,7 @@ class LocalHertz : public HertzForce<S> {
   using Pair = Eigen::Array<S, 2, 1, Eigen::DontAlign>;  // p, C: the depth is linear in them
   static constexpr const char* name = "HertzMap";
 
-  /// Precondition: p > 0, C >= 0.
+  /// Precondition: p > 0.
   LocalHertz(const Pair& c, const Vec3<S>& p_gradient, const Vec3<S>& compliance_gradient) noexcept
       : Law({.k = S(1) / (c[0] * std::sqrt(c[0])), .compliance = c[1]}, typename Law::Known{}),
         p_(c[0]),
@@ -28,15 +28,18 @@ class LocalHertz : public HertzForce<S> {
     return {S(1) / (root * root), params.compliance};
   }
   [[nodiscard]] static bool may_sharpen(const Pair& given, const Pair& sharp) noexcept {
-    return sharp[0] > given[0] / S(2) && sharp[1] >= given[1] / S(2);
+    return sharp[0] > given[0] / S(2) && std::abs(sharp[1] - given[1]) <= std::abs(given[1]) / S(2);
   }
 
-  /// - dU/dx [N] at depth D [m]: (3/5) F^(5/3) dp/dx + (1/2) F^2 dC/dx. 0 for D <= 0 and NaN.
+  /// - dU/dx [N] at depth D [m]: (3/5) F^(5/3) dp/dx + (1/2) F^2 dC/dx; where HertzForce's series has ended, at D_e with F_e,
+  /// ((3/5) F_e^(5/3) + (3/5) (F D - F_e D_e) / p) dp/dx + (1/2) F_e^2 dC/dx. 0 for D <= 0 and NaN.
   [[nodiscard]] Vec3<S> configurational_force(S depth) const noexcept {
     if (!is_positive(depth)) return Vec3<S>::Zero();
     const auto s = this->at(depth);
-    return (S(0.6L) * s.force * (depth / p_ * s.own)) * p_gradient_ +
-           (s.force / S(2) * s.force) * compliance_gradient_;
+    return (S(0.6L) / p_ *
+            (s.series_force * s.depth * s.own + (s.force * depth - s.series_force * s.depth))) *
+               p_gradient_ +
+           (s.series_force / S(2) * s.series_force) * compliance_gradient_;
   }
 
  private:

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include <palpate/response/response_contact.hpp>
+
+#include "support/check.hpp"
+#include "support/response_meshes.hpp"
+
+namespace {
+using namespace palpate;
+using V = Vec3<double>;
+
+const V axes(0.06, 0.04, 0.04);
+ResponseField ellipsoid(double nu) {
+  return ResponseField(test::ellipsoid_mesh(axes, 10), [](const V& p) { return p.y() <= -0.03; },
+                       {.E = 1e5, .nu = nu, .mesh = {.vertices = 140}, .threads = 1});
+}
+// Forty degrees from the top.
+SphereContact<double> on_flank(double depth) {
+  const V place(0.06 * std::sin(0.7), 0.04 * std::cos(0.7), 0),
+      weight = axes.cwiseProduct(axes).cwiseInverse(), normal = place.cwiseProduct(weight).normalized();
+  return {.place = place, .normal = normal, .radius = 0.012, .curvature = 45, .depth = depth};
+}
+Eigen::VectorXd shape(ResponseTick<1>& tick, const ResponseDisplay& display, double depth) {
+  Eigen::VectorXd u(3 * Eigen::Index(display.size()));
+  (void)tick.solve(on_flank(depth));
+  tick.displace(display, u.data(), 3);
+  return u;
+}
+}  // namespace
+
+TEST_CASE(
+    "a ball: what is not linear is of second order in depth, in the field and in the force; along the normal "
+    "it moves by its depth") {
+  for (const double nu : {0.0, 0.3, 0.5}) {
+    const ResponseField field = ellipsoid(nu);
+    std::vector<V> points{on_flank(0).place};
+    for (const V& p : field.mesh().vertices) points.push_back(p);
+    const ResponseDisplay display(field, points);
+    ResponseTick<1> tick(field), linear(field, {.second_order = false});
+    double last = 0;
+    for (const double depth : {0.25e-3, 1e-3, 4e-3}) {
+      const Eigen::VectorXd u = shape(tick, display, depth), v = shape(linear, display, depth);
+      CHECK(u.allFinite());
+      CHECK_RELATIVE(-u.head<3>().dot(on_flank(0).normal), depth, 1e-3);  // it slides sideways, too: 4e-4 met
+      const double size = (u - v).norm() / v.norm(),
+                   force = tick.solve(on_flank(depth)).force / linear.solve(on_flank(depth)).force - 1;
+      CHECK(std::abs(force) < 15 * depth);  // 14 per metre met
+      // Loads of second order go with d, what is across the normal with F, as d^(3/2): 4 to 8.
+      if (last > 0) CHECK((size > 4 * last && size < 8 * last));
+      last = size;
+    }
+  }
+}
+
+TEST_CASE("a ball: absurd curvatures and depths end in bounded forces and fields") {
+  const ResponseField field = ellipsoid(0.49);
+  const ResponseDisplay display(field, field.mesh().vertices);
+  ResponseTick<1> tick(field);
+  std::vector<double> u(3 * display.size());
+  for (const double curvature : {-1e9, -200.0, 0.0, 1e9})
+    for (const double depth : {1e-9, 1e-3, 0.1, 1e5}) {
+      SphereContact<double> in = on_flank(depth);
+      in.curvature = curvature;
+      const auto out = tick.solve(in);
+      CHECK((is_finite(out.force) && out.force >= 0 && is_finite(out.stiffness) && out.radius >= 0));
+      tick.displace(display, u.data(), 3);
+      for (const double x : u) CHECK(std::abs(x) < 10 * depth);
+    }
+  CHECK(tick.solve(on_flank(std::numeric_limits<double>::quiet_NaN())).force == 0);
+  CHECK(tick.solve(on_flank(-1e-3)).force == 0);
+}
