@@ -49,6 +49,7 @@ std::vector<Case> cases() {
   };
   const Body ellipsoid_t1{Body::ellipsoid, {60, 40, 40}, -36, true, true},
       a{Body::ellipsoid, {50, 35, 30}, -28, false, true}, A{Body::ellipsoid, {50, 45, 35}, -42, false, true};
+  const Body large = box(200, 100, 200, true);
   const V pushed = -V::UnitX();
   return {
       {"half_space",
@@ -77,20 +78,8 @@ std::vector<Case> cases() {
       {"A", A, 1, 0.49, {on_flank(A.size, 50, 6, 30)}, {1, 2, 4, 6, 9}},
       {"D", box(100, 60, 80), 1, 0.49, {on_top(-20, 60, 0, 6), on_top(22, 60, 0, 8)}, {1, 2, 4, 6, 9}},
       {"ball_t8", ellipsoid_t1, 1.5, 0.49, {on_top(0, 40, 0, 15)}, {0.5, 1, 2, 4, 8, 12}, true},
-      {"ball_half_space",
-       box(200, 100, 200, true),
-       1,
-       0.49,
-       {on_top(0, 100, 0, 10)},
-       {0.5, 1, 2, 3, 4, 5},
-       true},
-      {"ball_half_space3",
-       box(200, 100, 200, true),
-       1,
-       0.3,
-       {on_top(0, 100, 0, 10)},
-       {0.5, 1, 2, 3, 4, 5},
-       true},
+      {"ball_half_space", large, 1, 0.49, {on_top(0, 100, 0, 10)}, {0.5, 1, 2, 3, 4, 5}, true},
+      {"ball_half_space3", large, 1, 0.3, {on_top(0, 100, 0, 10)}, {0.5, 1, 2, 3, 4, 5}, true},
       {"ball_block", box(80, 50, 60, true), 1, 0.49, {on_top(0, 50, 0, 12)}, {0.5, 1, 2, 4, 8}, true},
       {"ball_edge", box(80, 50, 60), 1, 0.49, {on_top(28, 50, 0, 10)}, {0.5, 1, 2, 4, 6}, true},
       {"ball_slab", box(120, 30, 100, true), 1, 0.49, {on_top(0, 30, 0, 15)}, {0.5, 1, 2, 4, 7}, true},

@@ -105,18 +105,8 @@ class Rubber {
     const double size = increment.cwiseAbs().maxCoeff();
     double last = 1e300;
     for (int iteration = 0; iteration < 15; ++iteration) {
-      Eigen::VectorXd b;
-      if (!assemble(iteration == 0 ? &increment : nullptr, b)) break;
-      const double residual = b.norm();
-      if (!std::isfinite(residual)) break;
-      if (system_ == nullptr) system_ = std::make_unique<SymmetricEquations>(equations_, rows_, columns_);
-      system_->solve(values_, b);
-      double largest = 0;
-      for (int i = 0; i < x_.size(); ++i) {
-        const double d = equation_[i] >= 0 ? b[equation_[i]] : iteration == 0 ? increment[i] : 0;
-        x_[i] += d;
-        if (i < 3 * static_cast<int>(mesh_.nodes.size())) largest = (std::max)(largest, std::abs(d));
-      }
+      const double largest = newton_step(iteration == 0 ? &increment : nullptr);
+      if (largest < 0) break;
       if (linear) {
         set_linear_forces(before);
         return true;
@@ -124,6 +114,7 @@ class Rubber {
       if (iteration > 2 && largest > 3 * last) break;
       last = largest;
       if (largest < 1e-7 * size) {
+        Eigen::VectorXd b;
         assemble(nullptr, b);
         return true;
       }
@@ -246,19 +237,27 @@ class Rubber {
     return true;
   }
 
+  // Adds one of Newton's steps to the state, the first of an increment with its prescribed part. The largest displacement, or -1 where
+  // there is none to be had.
+  double newton_step(const Eigen::VectorXd* increment) {
+    Eigen::VectorXd b;
+    if (!assemble(increment, b) || !std::isfinite(b.norm())) return -1;
+    if (system_ == nullptr) system_ = std::make_unique<SymmetricEquations>(equations_, rows_, columns_);
+    system_->solve(values_, b);
+    double largest = 0;
+    for (int i = 0; i < x_.size(); ++i) {
+      const double d = equation_[i] >= 0 ? b[equation_[i]] : increment != nullptr ? (*increment)[i] : 0;
+      x_[i] += d;
+      if (i < 3 * static_cast<int>(mesh_.nodes.size())) largest = (std::max)(largest, std::abs(d));
+    }
+    return largest;
+  }
   // Newton's method, to steps of less than `tolerance` of the radius.
   bool settle_once(double tolerance, int most) {
     for (int iteration = 0; iteration < most; ++iteration) {
+      const double largest = newton_step(nullptr);
+      if (largest < 0) return false;
       Eigen::VectorXd b;
-      if (!assemble(nullptr, b) || !std::isfinite(b.norm())) return false;
-      if (system_ == nullptr) system_ = std::make_unique<SymmetricEquations>(equations_, rows_, columns_);
-      system_->solve(values_, b);
-      double largest = 0;
-      for (int i = 0; i < x_.size(); ++i) {
-        const double d = equation_[i] >= 0 ? b[equation_[i]] : 0;
-        x_[i] += d;
-        if (i < 3 * static_cast<int>(mesh_.nodes.size())) largest = (std::max)(largest, std::abs(d));
-      }
       if (largest < tolerance * sphere_.radius) return assemble(nullptr, b);
     }
     return false;

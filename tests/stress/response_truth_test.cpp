@@ -16,10 +16,10 @@ ResponseField ellipsoid(double nu, double vertices) {
   return ResponseField(test::ellipsoid_mesh(V(0.06, 0.04, 0.04), 14), [](const V& p) { return p.y() <= -0.036; },
                        {.E = 1.5e6, .nu = nu, .mesh = {.vertices = vertices}, .threads = 1});
 }
-ResponseField cube(double E, double nu, double vertices) {
-  MeshData<double> mesh = test::box_mesh(V(0.1, 0.1, 0.1), 12);
-  for (auto& p : mesh.vertices) p -= V(0.05, 0, 0.05);
-  return ResponseField(mesh, [](const V& p) { return p.y() <= 1e-6; }, {.E = E, .nu = nu, .mesh = {.vertices = vertices}, .threads = 1});
+ResponseField block(const V& size, double vertices) {
+  MeshData<double> mesh = test::box_mesh(size, 12);
+  for (auto& p : mesh.vertices) p -= V(size.x() / 2, 0, size.z() / 2);
+  return ResponseField(mesh, [](const V& p) { return p.y() <= 1e-6; }, {.E = 1e6, .nu = 0.49, .mesh = {.vertices = vertices}, .threads = 1});
 }
 template <std::size_t N>
 void check_reference(const ResponseField& field, const ResponseContact<double>& contact, const test::TruthVertex (&truth)[N], double force, double bound) {
@@ -46,7 +46,7 @@ TEST_CASE("nonlinear finite elements: ellipsoid t1 and cube t6 at 4 mm") {
   // A small solve mesh keeps the test short: the bound is wider than the 4 % of the full one.
   check_reference(ellipsoid(0.49, 260), {.place = V(0, 0.04, 0), .normal = V::UnitY(), .radius = 0.005, .displacement = V(0, -0.004, 0)},
                   test::truth_t1, test::truth_t1_force, 0.05);
-  check_reference(cube(1e6, 0.49, 260), {.place = V(0, 0.1, 0), .normal = V::UnitY(), .radius = 0.01, .displacement = V(0, -0.004, 0)},
+  check_reference(block(V(0.1, 0.1, 0.1), 260), {.place = V(0, 0.1, 0), .normal = V::UnitY(), .radius = 0.01, .displacement = V(0, -0.004, 0)},
                   test::truth_t6, test::truth_t6_force, 0.06);
 }
 
@@ -65,9 +65,7 @@ TEST_CASE("nonlinear finite elements: a ball on the ellipsoid, t8, felt through 
 }
 
 TEST_CASE("nonlinear finite elements: a ball on a slab, which is stiffer than a half-space") {
-  MeshData<double> mesh = test::box_mesh(V(0.12, 0.03, 0.1), 12);
-  for (auto& p : mesh.vertices) p -= V(0.06, 0, 0.05);
-  const ResponseField field(mesh, [](const V& p) { return p.y() <= 1e-6; }, {.E = 1e6, .nu = 0.49, .mesh = {.vertices = 260}, .threads = 1});
+  const ResponseField field = block(V(0.12, 0.03, 0.1), 260);
   ResponseTick<1> tick(field);
   double squares = 0;
   for (const auto& [depth, force] : test::truth_slab_ball_force) {

@@ -60,10 +60,15 @@ class HertzForce {
   /// D [m] at the force F [N].
   [[nodiscard]] S depth(S force) const noexcept {
     if (!is_positive(force)) return S(0);
-    const S root = std::cbrt(force / p_.k), most = at(series_depth()).series_force;
-    if (!(force > most)) return root * root + p_.compliance * force;
-    const S over = std::cbrt(force / most);
-    return series_depth() * over * over;
+    if (p_.compliance < S(0)) {
+      const Split end = at(series_depth());
+      if (force > end.force) {
+        const S over = std::cbrt(force / end.force);
+        return end.depth * over * over;
+      }
+    }
+    const S root = std::cbrt(force / p_.k);
+    return root * root + p_.compliance * force;
   }
   /// No limit: infinity.
   [[nodiscard]] S max_depth() const noexcept { return std::numeric_limits<S>::infinity(); }

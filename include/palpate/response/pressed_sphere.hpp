@@ -32,13 +32,14 @@ SphereForce<double> press_sphere(const ResponseField& field, const Contacts& con
   const double less = 1 - std::clamp(cube(R / c.ball) + cube(R * bent), 0.0, 1.0);
   const double softening = k != nullptr ? k->ball_softening * R / c.ball : 0;
   SphereForce<double> out{0, 0, std::sqrt(0.5 * R * (std::min)(depth, R))};
-  double stiffer = 0;                     // taken from C_w mu
-  for (int pass = 0; pass < 3; ++pass) {  // C_w hardly depends on a
+  constexpr int passes = 3;  // C_w hardly depends on a
+  double stiffer = 0;        // taken from C_w mu
+  for (int pass = 1; pass <= passes; ++pass) {
     c.a = out.radius;
     contacts.locate(c);
     const double own = c.m.dot(c.w * c.m);
     out = sphere_force(depth, R, modulus, (own - stiffer) / mu, less, softening);
-    if (k == nullptr) continue;
+    if (k == nullptr || pass == passes) continue;
     const double most = 0.25 * disc_compliance(c.a, nu).normal;
     stiffer = 8.0 / 3 * k->ball_pull * outward(nu) * (depth - own * out.force / mu) *
               MovedByLoads(field, c).radial.dot(c.m);

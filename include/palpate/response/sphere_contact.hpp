@@ -40,6 +40,7 @@ template <Real S>
   struct Value {
     S load, by_load, depth, by_depth;  // F / R^2, d / R, and their derivatives by s = a / R
   };
+  const S target = depth / R, series = compliance * R;
   const auto at = [&](S s) {
     const S l = std::log((S(1) + s) / (S(1) - s)), q = S(1) / (S(1) - s * s), s2 = s * s, s3 = s2 * s;
     const S own = S(0.5) * s * l - less * s * s3 / S(3),
@@ -52,12 +53,11 @@ template <Real S>
     v.by_load = modulus * (s * l + (s2 + S(1)) * q - S(1) - S(8) / S(3) * less * s2 * s2);
     v.depth = own * (S(1) + softening * own);
     v.by_depth = by_own * (S(1) + S(2) * softening * own);
-    const bool held = compliance * R * v.load < S(-0.5) * v.depth;
-    v.depth += held ? S(-0.5) * v.depth : compliance * R * v.load;
-    v.by_depth += held ? S(-0.5) * v.by_depth : compliance * R * v.by_load;
+    const bool held = series * v.load < S(-0.5) * v.depth;
+    v.depth += held ? S(-0.5) * v.depth : series * v.load;
+    v.by_depth += held ? S(-0.5) * v.by_depth : series * v.by_load;
     return v;
   };
-  const S target = depth / R;
   S low = 0, high = S(0.95), s = (std::min)(std::sqrt(target), S(0.9));
   for (int i = 0; i < 40; ++i) {
     const Value v = at(s);
