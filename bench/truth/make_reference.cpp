@@ -219,104 +219,157 @@ void write_meta(const Case& c, const std::vector<double>& reached, const std::st
       meta.file);
 }
 
-void make(const Case& c, const std::string& folder, double fineness) {
-  std::filesystem::create_directories(folder);
-  const std::string geo = folder + "/body.geo", msh = folder + "/body.msh";
-  { File script(geo, GmshScript(c.body, c.patches, c.ball, fineness)().c_str()); }
-  if (std::system(("gmsh -3 -v 2 '" + geo + "' -o '" + msh + "'").c_str()) != 0)
-    throw std::runtime_error("gmsh failed on " + geo);
-  const Tetrahedra mesh = read_msh(msh);
-  const Surface surface = surface_of(mesh, c.body);
-  const std::vector<int> region = regions(c, mesh, surface);
-  write_surface(c, surface, region, folder);
+// One case: its mesh, the body, and the files of its folder.
+class Reference {
+ public:
+  Reference(const Case& c, const std::string& folder, double fineness)
+      : case_(c),
+        folder_(folder),
+        mesh_(meshed(c, folder, fineness)),
+        surface_(surface_of(mesh_, c.body)),
+        region_(regions(c, mesh_, surface_)),
+        half_{c.body.half_x, false, c.body.half_z},
+        rubber_(mesh_, c.E, c.nu, [this](int node, int axis) {
+          const double near = 1e-6 * case_.body.size.maxCoeff();
+          return region_[node] != 0 || (half_[axis] && std::abs(mesh_.nodes[node][axis]) < near);
+        }) {
+    std::printf("%s: %zu nodes, %zu elements, %d equations, %zu vertices on the surface\n", c.name,
+                mesh_.nodes.size(), mesh_.elements.size(), rubber_.equations(), surface_.node.size());
+    std::fflush(stdout);
+  }
 
-  const bool half[3] = {c.body.half_x, false, c.body.half_z};
-  const double near = 1e-6 * c.body.size.maxCoeff();
-  Rubber rubber(mesh, c.E, c.nu, [&](int node, int axis) {
-    return region[node] != 0 || (half[axis] && std::abs(mesh.nodes[node][axis]) < near);
-  });
-  std::printf("%s: %zu nodes, %zu elements, %d equations, %zu vertices on the surface\n", c.name,
-              mesh.nodes.size(), mesh.elements.size(), rubber.equations(), surface.node.size());
-  std::fflush(stdout);
+  void make() {
+    write_surface(case_, surface_, region_, folder_);
+    write_meta(case_, case_.ball ? press_ball() : press_patches(), folder_);
+  }
 
-  const auto motion = [&](double depth) {
-    Eigen::VectorXd d = Eigen::VectorXd::Zero(rubber.state().size());
-    for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
-      if (region[n] <= 0) continue;
-      const Patch& p = c.patches[static_cast<std::size_t>(region[n] - 1)];
+ private:
+  struct Strides {
+    double longest, smallest, growth;  // growth: of a stride over the last one that found equilibrium; 0: stays
+  };
+  struct Tables {
+    Tables(const std::string& folder, const char* which)
+        : shape(folder + "/displacement" + which + ".csv", "depth_m,vertex,ux,uy,uz\n"),
+          force(folder + "/force" + which + ".csv", "depth_m,patch,Fx,Fy,Fz\n") {}
+    File shape, force;
+  };
+
+  static Tetrahedra meshed(const Case& c, const std::string& folder, double fineness) {
+    std::filesystem::create_directories(folder);
+    const std::string geo = folder + "/body.geo", msh = folder + "/body.msh";
+    { File script(geo, GmshScript(c.body, c.patches, c.ball, fineness)().c_str()); }
+    if (std::system(("gmsh -3 -v 2 '" + geo + "' -o '" + msh + "'").c_str()) != 0)
+      throw std::runtime_error("gmsh failed on " + geo);
+    return read_msh(msh);
+  }
+
+  // The depths that were reached.
+  std::vector<double> press_patches() {
+    const Eigen::VectorXd rest = rubber_.state();
+    rubber_.step(motion(1), true);
+    const auto force = [this](std::size_t patch) { return patch_force(patch); };
+    {
+      const Tables linear(folder_, "_linear");
+      for (double depth : case_.depths) write(linear, depth, depth, force);
+    }
+    rubber_.reset(rest);
+    const double a = case_.patches[0].radius;
+    return follow({a / 4, a / 50, 0}, [this](double, double by) { return rubber_.step(motion(by)); }, force);
+  }
+
+  std::vector<double> press_ball() {
+    const Patch& first = case_.patches[0];
+    RigidSphere sphere{V::Zero(), first.radius, 100 * case_.E, {}};
+    for (const auto& face : surface_.faces)
+      if (std::all_of(face.begin(), face.end(), [&](int n) {
+            return region_[n] == 0 && (mesh_.nodes[n] - first.place).norm() < 1.3 * sphere.radius;
+          }))
+        sphere.faces.push_back(face);
+    Eigen::VectorXd speed = Eigen::VectorXd::Zero(rubber_.state().size());  // by depth, of the last step
+    const auto press = [&](double from, double by) {
+      const Eigen::VectorXd before = rubber_.state();
+      sphere.centre = first.place + (sphere.radius - from - by) * first.normal;
+      if (!rubber_.settle(sphere, before + by * speed)) return false;
+      speed = (rubber_.state() - before) / by;
+      return true;
+    };
+    return follow({sphere.radius / 12, sphere.radius / 2000, 1.5}, press,
+                  [this](std::size_t) { return rubber_.sphere_force(); });
+  }
+
+  // press(from, by): moves the tool on, false where there is no equilibrium; force(patch): of the part that is meshed.
+  template <class Press, class Force>
+  std::vector<double> follow(const Strides& strides, Press press, Force force) {
+    const Tables tables(folder_, "");
+    double at = 0, stride = strides.longest;
+    std::vector<double> reached;
+    for (double depth : case_.depths) {
+      while (at < depth && stride > strides.smallest) {
+        const double d = (std::min)(stride, depth - at);
+        if (press(at, d)) {
+          if (strides.growth > 0)
+            stride = (std::min)(strides.longest, strides.growth * d + strides.longest / 8);
+          at = depth - at - d < 1e-9 ? depth : at + d;
+          std::printf("  %.3f mm, least J %.3f\n", at, rubber_.least_volume_ratio());
+        } else {
+          stride = d / 2;
+        }
+        std::fflush(stdout);
+      }
+      if (at < depth) {
+        std::printf("  %.3f mm not reached\n", depth);
+        break;
+      }
+      write(tables, depth, 1, force);
+      reached.push_back(depth);
+    }
+    return reached;
+  }
+
+  // The patches' motion as they go `depth` deeper.
+  Eigen::VectorXd motion(double depth) const {
+    Eigen::VectorXd d = Eigen::VectorXd::Zero(rubber_.state().size());
+    for (std::size_t n = 0; n < mesh_.nodes.size(); ++n) {
+      if (region_[n] <= 0) continue;
+      const Patch& p = case_.patches[static_cast<std::size_t>(region_[n] - 1)];
       for (int k = 0; k < 3; ++k)
-        if (!half[k]) d[3 * static_cast<Eigen::Index>(n) + k] = depth * p.factor * p.direction[k];
+        if (!half_[k]) d[3 * static_cast<Eigen::Index>(n) + k] = depth * p.factor * p.direction[k];
     }
     return d;
-  };
-  const auto write = [&](const File& shape, const File& force, double depth, double scale) {
-    for (std::size_t v = 0; v < surface.node.size(); ++v) {
-      const V u = scale * rubber.state().segment<3>(3 * surface.node[v]).cwiseProduct(surface.sign[v]) / 1e3;
-      std::fprintf(shape.file, "%.9g,%zu,%.9g,%.9g,%.9g\n", depth / 1e3, v, u.x(), u.y(), u.z());
+  }
+  V patch_force(std::size_t patch) const {
+    V F = V::Zero();
+    for (std::size_t n = 0; n < mesh_.nodes.size(); ++n)
+      if (region_[n] == static_cast<int>(patch) + 1)
+        F += rubber_.forces().segment<3>(3 * static_cast<Eigen::Index>(n));
+    return F;
+  }
+
+  template <class Force>
+  void write(const Tables& tables, double depth, double scale, Force force) const {
+    for (std::size_t v = 0; v < surface_.node.size(); ++v) {
+      const V u = scale * rubber_.state().segment<3>(3 * surface_.node[v]).cwiseProduct(surface_.sign[v]) / 1e3;
+      std::fprintf(tables.shape.file, "%.9g,%zu,%.9g,%.9g,%.9g\n", depth / 1e3, v, u.x(), u.y(), u.z());
     }
-    for (std::size_t p = 0; p < c.patches.size(); ++p) {
-      V F = c.ball ? rubber.sphere_force() : V(V::Zero());
-      for (std::size_t n = 0; n < mesh.nodes.size(); ++n)
-        if (region[n] == static_cast<int>(p) + 1)
-          F += rubber.forces().segment<3>(3 * static_cast<Eigen::Index>(n));
-      F *= scale;
+    for (std::size_t p = 0; p < case_.patches.size(); ++p) {
+      V F = scale * force(p);
       for (int k = 0; k < 3; ++k)  // of the mirrored parts, too
-        if (half[k]) {
+        if (half_[k]) {
           F *= 2;
           F[k] = 0;
         }
-      std::fprintf(force.file, "%.9g,%zu,%.9g,%.9g,%.9g\n", depth / 1e3, p + 1, F.x(), F.y(), F.z());
+      std::fprintf(tables.force.file, "%.9g,%zu,%.9g,%.9g,%.9g\n", depth / 1e3, p + 1, F.x(), F.y(), F.z());
     }
-  };
-  const char *shape_head = "depth_m,vertex,ux,uy,uz\n", *force_head = "depth_m,patch,Fx,Fy,Fz\n";
-  if (!c.ball) {
-    const Eigen::VectorXd rest = rubber.state();
-    rubber.step(motion(1), true);
-    File shape(folder + "/displacement_linear.csv", shape_head),
-        force(folder + "/force_linear.csv", force_head);
-    for (double depth : c.depths) write(shape, force, depth, depth);
-    rubber.reset(rest);
   }
-  File shape(folder + "/displacement.csv", shape_head), force(folder + "/force.csv", force_head);
-  RigidSphere sphere{V::Zero(), c.patches[0].radius, 100 * c.E, {}};
-  for (const auto& face : surface.faces)
-    if (c.ball && std::all_of(face.begin(), face.end(), [&](int n) {
-          return region[n] == 0 && (mesh.nodes[n] - c.patches[0].place).norm() < 1.3 * sphere.radius;
-        }))
-      sphere.faces.push_back(face);
-  Eigen::VectorXd speed = Eigen::VectorXd::Zero(rubber.state().size());  // by depth, of the last step
-  const auto press = [&](double from, double by) {
-    if (!c.ball) return rubber.step(motion(by));
-    const Eigen::VectorXd before = rubber.state();
-    sphere.centre = c.patches[0].place + (sphere.radius - from - by) * c.patches[0].normal;
-    if (!rubber.settle(sphere, before + by * speed)) return false;
-    speed = (rubber.state() - before) / by;
-    return true;
-  };
-  const double smallest = sphere.radius / (c.ball ? 2000 : 50), longest = sphere.radius / (c.ball ? 12 : 4);
-  double at = 0, stride = longest;
-  std::vector<double> reached;
-  for (double depth : c.depths) {
-    while (at < depth && stride > smallest) {
-      const double d = (std::min)(stride, depth - at);
-      if (press(at, d)) {
-        stride = (std::min)(longest, c.ball ? 1.5 * d + longest / 8 : stride);
-        at = depth - at - d < 1e-9 ? depth : at + d;
-        std::printf("  %.3f mm, least J %.3f\n", at, rubber.least_volume_ratio());
-      } else {
-        stride = d / 2;
-      }
-      std::fflush(stdout);
-    }
-    if (at < depth) {
-      std::printf("  %.3f mm not reached\n", depth);
-      break;
-    }
-    write(shape, force, depth, 1);
-    reached.push_back(depth);
-  }
-  write_meta(c, reached, folder);
-}
+
+  const Case& case_;
+  std::string folder_;
+  Tetrahedra mesh_;
+  Surface surface_;
+  std::vector<int> region_;  // by node
+  std::array<bool, 3> half_;
+  Rubber rubber_;
+};
 
 }  // namespace
 
@@ -325,7 +378,7 @@ int main(int argc, char** argv) try {
     if (argc < 4)
       std::printf("%s\n", c.name);
     else if (argv[1] == std::string(c.name)) {
-      make(c, argv[2], std::atof(argv[3]));
+      Reference(c, argv[2], std::atof(argv[3])).make();
       return 0;
     }
   }

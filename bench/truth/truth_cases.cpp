@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
       tick.displace(display, u.data(), 3);
       for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
         std::fprintf(displacement, "%.9g,%zu,%.9g,%.9g,%.9g\n", depth, v, u[3 * v], u[3 * v + 1], u[3 * v + 2]);
-      const V f = -F.force * normal;
+      const V f = F.on_body(normal);
       std::fprintf(force, "%.9g,1,%.9g,%.9g,%.9g\n", depth, f.x(), f.y(), f.z());
     }
   } else for (double depth : numbers(meta, "depths_m")) {

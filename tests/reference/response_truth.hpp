@@ -6,7 +6,8 @@
 /// of 100 mm, E = 1 MPa, held at its base, stuck disc of 10 mm on the top face), both pressed 4 mm. Taylor-Hood tetrahedra, checked
 /// against CalculiX. Own error: displacement 1.4-1.8 %, force 1.4 % too high. And t8's force: a frictionless ball of 15 mm pressed
 /// on the top of the same ellipsoid, the contact growing; own error 0.1 to 1 %, too high, largest where the contact is small. And such a
-/// ball on a slab of 120 x 30 x 100 mm, E = 1 MPa, held at its base (bench/truth/make_reference, case ball_slab with 8).
+/// ball on a slab of 120 x 30 x 100 mm, E = 1 MPa, held at its base (bench/truth/make_reference, case ball_slab with 8), and near an edge (case
+/// ball_edge with 8).
 
 namespace palpate::test {
 
@@ -18,6 +19,9 @@ inline constexpr double truth_t8_force[][2] = {  // depth [m], [N]
   {0.0005, 3.01307}, {0.001, 8.31295}, {0.002, 22.6942}, {0.004, 61.1423}, {0.008, 161.973}, {0.012, 282.996}};
 
 inline constexpr double truth_slab_ball_force[][2] = {{0.0005, 2.63583}, {0.001, 7.73664}, {0.002, 23.0850}, {0.004, 70.2063}, {0.007, 173.895}};
+
+// Block 80 x 50 x 60 mm, 1 MPa, a ball of 10 mm at (28, 50, 0) mm: depth [m], force on the body along x and y [N].
+inline constexpr double truth_edge_ball_force[][3] = {{0.0005, -0.00410007, -1.83811}, {0.001, -0.0275409, -5.05521}, {0.002, -0.186693, -13.8051}, {0.004, -1.20890, -37.4276}, {0.006, -3.39087, -66.7785}};
 
 inline constexpr double truth_t1_force = 69.9884;  // [N]
 inline constexpr TruthVertex truth_t1[] = {

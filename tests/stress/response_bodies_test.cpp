@@ -8,6 +8,7 @@
 
 #include "support/check.hpp"
 #include "support/response_bodies.hpp"
+#include "support/walker.hpp"
 
 #include <cstdlib>
 #include <random>
@@ -16,40 +17,6 @@
 namespace {
 using namespace palpate;
 using V = Vec3<double>;
-
-// A probe that is kept at a small distance outside; its nearest point of the surface and the direction from there are
-// continuous over convex edges.
-class Walker {
- public:
-  Walker(const TriangleBvh<double>& tree, const MeshData<double>& mesh, double distance, unsigned seed)
-      : tree_(tree), random_(seed), distance_(distance) {
-    const auto& t = mesh.triangles[random_() % mesh.triangles.size()];
-    const V &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-    place = (a + b + c) / 3;
-    normal = (b - a).cross(c - a).normalized();
-    heading_ = perpendicular(normal);
-  }
-  V place, normal;
-  void step(double length) {
-    std::normal_distribution<double> turn(0, 0.1);
-    heading_ = tangential(V(heading_ + V(turn(random_), turn(random_), turn(random_))), normal).normalized();
-    const V probe = place + distance_ * normal + length * heading_;
-    const auto at = tree_.closest(probe);
-    const V out = probe - at.position;
-    if (out.dot(normal) > 0.3 * out.norm() && (at.position - place).norm() < 3 * length) {
-      place = at.position;
-      normal = out.normalized();
-    } else {
-      heading_ = -heading_;  // a hollow: the nearest point would jump
-    }
-  }
-
- private:
-  const TriangleBvh<double>& tree_;
-  std::mt19937 random_;
-  double distance_;
-  V heading_;
-};
 
 // `convergence`: bound of the median change of force between the two solve meshes.
 void try_body(const test::ResponseBody& body, double convergence) {
@@ -91,17 +58,9 @@ void try_body(const test::ResponseBody& body, double convergence) {
     }
     return m;
   };
-  // What is left of the change from l to r in the steepest 16,384th of the way: a jump keeps all of it.
-  const auto left_over = [&](Both l, Both r, const auto& apart_by) {
-    for (int i = 0; i < 14; ++i) {
-      const Both m = middle(l, r);
-      (apart_by(l, m) > apart_by(m, r) ? r : l) = m;
-    }
-    return apart_by(l, r);
-  };
   for (int path = 0; path < paths; ++path) {
     const double a = size * std::array{0.01, 0.03, 0.06, 0.15, 0.4}[std::size_t(path) % 5], d = 0.2 * a;
-    Walker one(tree, body.mesh, 0.3 * h, unsigned(path)),
+    test::Walker one(tree, body.mesh, 0.3 * h, unsigned(path)),
         two(tree, body.mesh, 0.3 * h, unsigned(path) + 1000000);
     V last[2], F[2];
     Both before_contacts, before_drawn;
@@ -109,7 +68,7 @@ void try_body(const test::ResponseBody& body, double convergence) {
       const V from[2] = {one.place, two.place}, turned[2] = {one.normal, two.normal};
       one.step(0.005 * h);
       two.step(0.005 * h);
-      const auto contact = [&](const Walker& w) {
+      const auto contact = [&](const test::Walker& w) {
         return ResponseContact<double>{
             .place = w.place,
             .normal = w.normal,
@@ -137,7 +96,7 @@ void try_body(const test::ResponseBody& body, double convergence) {
           tick.solve(r.data(), count, Fr);
           return ((Fl[0] - Fr[0]).norm() + (count > 1 ? (Fl[1] - Fr[1]).norm() : 0)) / stiff;
         };
-        force_jump = (std::max)(force_jump, left_over(before_contacts, both, change_of_force));
+        force_jump = (std::max)(force_jump, test::left_over(before_contacts, both, middle, change_of_force));
         tick.solve(both.data(), count, F);
       }
       before_contacts = both;
@@ -166,7 +125,7 @@ void try_body(const test::ResponseBody& body, double convergence) {
             tick.displace(display, ur.data(), 3);
             return apart(ul, ur);
           };
-          field_jump = (std::max)(field_jump, left_over(before_drawn, both, change_of_field));
+          field_jump = (std::max)(field_jump, test::left_over(before_drawn, both, middle, change_of_field));
         }
         before_drawn = both;
         before = u;

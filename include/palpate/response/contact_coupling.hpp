@@ -22,9 +22,11 @@ constexpr std::size_t place_nodes = 3 * TouchMesh::most_parts;
 struct PlacedContact {
   Vec3<double> x, m, d;  ///< m: unit normal into the body
   double a = 0;
-  double least = 0;   ///< smaller compliance of the half-space, times mu
-  double ball = 0;    ///< radius of the sphere; 0: stuck patch
-  double spread = 0;  ///< of a sphere's contact along the surface, at its middle, by r
+  double least = 0;  ///< smaller compliance of the half-space, times mu
+  double ball = 0;   ///< radius of the sphere; 0: stuck patch
+  Vec3<double> first =
+      Vec3<double>::Zero();  ///< of a sphere: where it touches first; its contact moves from there to x
+  double spread = 0;         ///< of a sphere's contact along the surface, at its middle, by r
   TouchPlace place;
   FixedVector<PatchWeight, place_nodes> nodes;  ///< solved ones at the place
   double carried = 1;                           ///< of the force, not by what is held
@@ -52,6 +54,11 @@ struct PlacedContact {
   [[nodiscard]] Vec3<double> t1() const noexcept { return perpendicular(Vec3<double>(-m)); }
   [[nodiscard]] Vec3<double> t2() const noexcept { return t1().cross(m); }
 
+  /// s^2 of the stuck disc that spreads the load as far as the contact does, in mean r^2 of its weight: a disc's is 2/3 s^2, that of
+  /// a sphere's pressure 2/5 a^2. `seen_loaded2`: in the mean of that of the load and of the disc by which the contact is seen.
+  [[nodiscard]] double loaded2() const noexcept { return (ball > 0 ? 0.6 : 1) * a * a; }
+  [[nodiscard]] double seen_loaded2() const noexcept { return (ball > 0 ? 0.8 : 1) * a * a; }
+
   void hold_moments() noexcept { held = -moments.give * (moments.G * P + moments.of_loads(dipole, tilt)); }
 };
 
@@ -69,7 +76,7 @@ struct PlacedContact {
 template <class Each>
 void each_spread(const ResponseField& field, const PlacedContact& c, const Each& each) noexcept {
   const double spacing = mean_of(&TouchNode::spacing, field, c);
-  const PatchTable::Level level = field.table().level(c.a * c.a - 0.5 * spacing * spacing);
+  const PatchTable::Level level = field.table().level(c.loaded2() - 0.5 * spacing * spacing);
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t l = 0; l < 2; ++l)
       each(c.share * c.place.weight[Eigen::Index(i)] * (l == 0 ? 1 - level.part : level.part),

@@ -153,15 +153,4 @@ struct ContactNear {
   }
 };
 
-/// Within a ball's contact the surface lies on the ball; beside it, not inside. r: place from the first touch; u: its
-/// displacement, changed along m.
-inline void rest_on_ball(const Vec3<double>& m, double depth, double ball, double a, const Vec3<double>& r,
-                         Vec3<double>& u) noexcept {
-  const Vec3<double> moved = r + u;
-  const double rest = ball * ball - tangential(moved, m).squaredNorm();
-  if (!(rest > 0) || r.dot(m) > ball) return;
-  const double inside = depth - ball + std::sqrt(rest) - moved.dot(m);
-  if (inside > 0 || tangential(r, m).squaredNorm() < a * a) u += inside * m;
-}
-
 }  // namespace palpate::detail

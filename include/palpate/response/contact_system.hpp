@@ -115,7 +115,7 @@ class ContactSystem {
 
   // s^2 of patch_table.hpp.
   [[nodiscard]] static double averaged(const Contact& c, double spacing) noexcept {
-    return c.a * c.a - 0.25 * spacing * spacing;
+    return c.seen_loaded2() - 0.25 * spacing * spacing;
   }
   // Adds the solved nodes of a place.
   template <class List>

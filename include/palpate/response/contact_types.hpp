@@ -67,9 +67,9 @@ struct SecondOrder {
   double turned = 0.7;      ///< displacement by the rotation of w (turned_field.hpp); the same for every nu
   double crossed = 0.3;     ///< by w's and the near field's together; the same for every nu
   // Of a frictionless sphere (pressed_sphere.hpp).
-  double ball_pull = 0.33;  ///< radial double force -ball_pull nu / (1 - nu) F d
+  double ball_pull = 0.33;  ///< radial double force -nu / (1 - nu) F (C_w F + ball_pull d_H)
   double ball_spread =
-      0.15;  ///< displacement along the surface within the contact, ball_spread (1 - (r/a)^2) r d / R; times 1 + 1.7 b
+      0.15;  ///< displacement along the surface within the contact, ball_spread (1 - (r/a)^2) r d_H / R; times 1 + 1.7 b
   double ball_softening = 0.06;  ///< of depth over the sphere's radius; times 1 - 7 b
 
   [[nodiscard]] SecondOrder at(double nu) const noexcept {

@@ -62,11 +62,11 @@ class ResponseTick {
 
   /// One sphere alone; then `displace` writes its field.
   template <Real S>
-  [[nodiscard]] SphereForce<double> solve(const SphereContact<S>& in) noexcept {
+  [[nodiscard]] PressedSphere solve(const SphereContact<S>& in) noexcept {
     count_ = 0;
     if (!is_usable(ResponseContact<S>{in.place, in.normal, in.radius, Vec3<S>(in.normal * in.depth)}) ||
         !is_finite(in.curvature) || !(in.depth > S(0)))
-      return {0, 0, 0};
+      return {};
     auto& c = contact_[0];
     c.x = in.place.template cast<double>();
     c.m = -in.normal.template cast<double>().normalized();

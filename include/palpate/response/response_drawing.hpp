@@ -9,6 +9,7 @@
 
 #include <palpate/response/bent_edges.hpp>
 #include <palpate/response/contact_system.hpp>
+#include <palpate/response/pressed_sphere.hpp>
 #include <palpate/response/response_display.hpp>
 
 #include <type_traits>
@@ -212,22 +213,22 @@ class ResponseDrawing {
       u.z += weight * (exact.z - drawn.z);
     }
     if (held)
-      for (auto c : span.close) hold(contacts.contact[c], contacts.near[c], at, u);
+      for (auto c : span.close) hold(contacts.contact[c], contacts.near[c], at, reach, u);
     for (std::uint32_t k = 0; k < entries<V>; k += lane_size)
       emit(i + k, Lane3{four_of(u.x, k), four_of(u.y, k), four_of(u.z, k)});
   }
 
   // The patch moves by d, as far as the contact grips; beneath a ball the surface lies on it.
   template <class V>
-  static void hold(const PlacedContact& c, const ContactNear& near, const Axes<V>& at, Axes<V>& u) noexcept {
+  static void hold(const PlacedContact& c, const ContactNear& near, const Axes<V>& at, float reach,
+                   Axes<V>& u) noexcept {
     const V rx = at.x - near.place.x(), ry = at.y - near.place.y(), rz = at.z - near.place.z(),
             r2 = rx * rx + ry * ry + rz * rz;
     if (c.ball > 0) {
       for (std::uint32_t l = 0; l < entries<V>; ++l) {
         if (r2[l] > 4 * near.a * near.a) continue;
         Vec3<double> v(double(u.x[l]), double(u.y[l]), double(u.z[l]));
-        rest_on_ball(c.m, c.d.dot(c.m), c.ball, c.a,
-                     Vec3<double>(double(at.x[l]), double(at.y[l]), double(at.z[l])) - c.x, v);
+        rest_on_ball(c, Vec3<double>(double(at.x[l]), double(at.y[l]), double(at.z[l])), double(reach), v);
         u.x[l] = static_cast<float>(v[0]), u.y[l] = static_cast<float>(v[1]),
         u.z[l] = static_cast<float>(v[2]);
       }

@@ -27,16 +27,16 @@ namespace palpate {
 /// What a pressed sphere feels.
 template <Real S>
 struct SphereForce {
-  S force;      ///< normal, >= 0 [N]
-  S stiffness;  ///< dF/dd [N/m]
-  S radius;     ///< of the contact [m]
+  S force = S(0);      ///< normal, >= 0 [N]
+  S stiffness = S(0);  ///< dF/dd [N/m]
+  S radius = S(0);     ///< of the contact [m]
 };
 
 /// Solves d(a) for a by Newton steps inside a bracket; d grows with a, so the root is single. `compliance`: C_w; `less`: g.
 template <Real S>
 [[nodiscard]] inline SphereForce<S> sphere_force(S depth, S R, S modulus, S compliance, S less = S(0),
                                                  S softening = S(0)) noexcept {
-  if (!is_finite(depth) || !(depth > S(0)) || !is_finite(R) || !(R > S(0))) return {S(0), S(0), S(0)};
+  if (!is_finite(depth) || !(depth > S(0)) || !is_finite(R) || !(R > S(0))) return {};
   struct Value {
     S load, by_load, depth, by_depth;  // F / R^2, d / R, and their derivatives by s = a / R
   };

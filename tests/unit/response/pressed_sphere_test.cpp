@@ -51,6 +51,22 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a ball where the body leans: it is pushed across in proportion to its force, along the surface") {
+  const ResponseField field = ellipsoid(0.49);
+  ResponseTick<1> tick(field), linear(field, {.second_order = false});
+  double last = 0;
+  for (const double depth : {0.5e-3, 2e-3}) {
+    const SphereContact<double> in = on_flank(depth);
+    const PressedSphere out = tick.solve(in);
+    CHECK(std::abs(out.across.dot(in.normal)) < 1e-12 * out.force);
+    CHECK_RELATIVE(-out.on_body(in.normal).dot(in.normal), out.force, 1e-12);  // a rounding
+    const double by_force = out.across.norm() / out.force / out.force;
+    if (last > 0) CHECK_RELATIVE(by_force, last, 0.1);
+    last = by_force;
+    CHECK(linear.solve(in).across.norm() < 1e-12 * out.force);
+  }
+}
+
 TEST_CASE("a ball: absurd curvatures and depths end in bounded forces and fields") {
   const ResponseField field = ellipsoid(0.49);
   const ResponseDisplay display(field, field.mesh().vertices);
@@ -61,6 +77,7 @@ TEST_CASE("a ball: absurd curvatures and depths end in bounded forces and fields
       SphereContact<double> in = on_flank(depth);
       in.curvature = curvature;
       const auto out = tick.solve(in);
+      CHECK(out.across.norm() <= 0.25 * (1 + 1e-12) * out.force);  // the bound it is held at, rounded
       CHECK((is_finite(out.force) && out.force >= 0 && is_finite(out.stiffness) && out.radius >= 0));
       tick.displace(display, u.data(), 3);
       // The field is held at 4 d on the solve mesh's vertices, which are all that are drawn.

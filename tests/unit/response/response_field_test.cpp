@@ -5,25 +5,18 @@
 #include "support/check.hpp"
 #include "support/no_heap.hpp"
 #include "support/response_bodies.hpp"
+#include "support/response_fields.hpp"
 
 namespace {
 using namespace palpate;
 using V = Vec3<double>;
 
-ResponseField ellipsoid(double nu, double vertices) {
-  return ResponseField(test::ellipsoid_mesh(V(0.06, 0.04, 0.04), 14), [](const V& p) { return p.y() <= -0.036; },
-                       {.E = 1.5e6, .nu = nu, .mesh = {.vertices = vertices}, .threads = 1});
-}
-ResponseField cube(double E, double nu, double vertices) {
-  MeshData<double> mesh = test::box_mesh(V(0.1, 0.1, 0.1), 12);
-  for (auto& p : mesh.vertices) p -= V(0.05, 0, 0.05);
-  return ResponseField(mesh, [](const V& p) { return p.y() <= 1e-6; }, {.E = E, .nu = nu, .mesh = {.vertices = vertices}, .threads = 1});
-}
+const V cube(0.1, 0.1, 0.1);
 }  // namespace
 
 TEST_CASE("large block: flat punch and Hertz tend to the half-space, nu = 0, 0.3, 1/2") {
   for (double nu : {0.0, 0.3, 0.5}) {
-    const ResponseField field = cube(1e6, nu, 120);
+    const ResponseField field = test::block_field(cube, 1e6, nu, 120);
     ResponseTick<1> tick(field, {.second_order = false});
     const double a = 1e-3, mu = 1e6 / (2 * (1 + nu)), d = 1e-5;
     const ResponseContact<double> punch{.place = V(0.004, 0.1, 0.003), .normal = V::UnitY(), .radius = a, .displacement = V(0, -d, 0)};
@@ -38,7 +31,7 @@ TEST_CASE("large block: flat punch and Hertz tend to the half-space, nu = 0, 0.3
 }
 
 TEST_CASE("field: patch moves by d, held vertices rest, reciprocity, forces of two contacts, refinement") {
-  const ResponseField field = ellipsoid(0.5, 140);
+  const ResponseField field = test::ellipsoid_field(0.5, 140);
   ResponseTick<2> tick(field);
   const V n2 = V(0.03 / 0.0036, 0.034641016151377546 / 0.0016, 0).normalized();
   const ResponseContact<double> two[2] = {{.place = V(-0.02, 0.037712361663282534, 0), .normal = V(-0.02 / 0.0036, 0.037712361663282534 / 0.0016, 0).normalized(), .radius = 0.005, .displacement = V(0, -0.001, 0)},
@@ -80,7 +73,7 @@ TEST_CASE("field: patch moves by d, held vertices rest, reciprocity, forces of t
   MESSAGE("reciprocity of w: ", std::sqrt(difference / norm));
   CHECK(std::sqrt(difference / norm) < 0.08);
   // Refinement: 140 and 200 vertices differ by little.
-  const ResponseField fine = ellipsoid(0.5, 200);
+  const ResponseField fine = test::ellipsoid_field(0.5, 200);
   ResponseTick<2> finer(fine);
   finer.solve(two, 2, again);
   CHECK_RELATIVE(F[0].norm(), again[0].norm(), 0.02);
@@ -88,7 +81,7 @@ TEST_CASE("field: patch moves by d, held vertices rest, reciprocity, forces of t
 }
 
 TEST_CASE("near field of second order: the patch moves as one, no jump at its edge or below its axis") {
-  const ResponseField field = ellipsoid(0.5, 60);  // nu = 1/2: the disc's own field is uniform within
+  const ResponseField field = test::ellipsoid_field(0.5, 60);  // nu = 1/2: the disc's own field is uniform within
   detail::ContactSystem<1> contacts[2] = {{field, {}}, {field, {.second_order = false}}};
   const double a = 0.005;
   for (auto& system : contacts) {
@@ -165,7 +158,7 @@ TEST_CASE("bad input: reported at set-up, zero in a tick") {
 }
 
 TEST_CASE("tick: no heap, no memory of what was before, coinciding contacts, surplus") {
-  const ResponseField field = ellipsoid(0.3, 60);
+  const ResponseField field = test::ellipsoid_field(0.3, 60);
   const V n = V::UnitY();
   const ResponseContact<double> one{.place = V(0, 0.04, 0), .normal = n, .radius = 0.004, .displacement = V(0.0005, -0.002, 0)};
   const ResponseContact<double> far{.place = V(0.06, 0, 0), .normal = V::UnitX(), .radius = 0.02, .displacement = V(-0.002, 0, 0)};
@@ -202,7 +195,7 @@ TEST_CASE("tick: no heap, no memory of what was before, coinciding contacts, sur
 }
 
 TEST_CASE("saved and loaded: the same bits; bytes that are not a saved field are refused by name") {
-  const ResponseField field = cube(1e6, 0.4, 40);
+  const ResponseField field = test::block_field(cube, 1e6, 0.4, 40);
   const std::vector<std::byte> bytes = save_response_field(field);
   const ResponseField loaded = load_response_field(bytes);
   CHECK(save_response_field(loaded) == bytes);
