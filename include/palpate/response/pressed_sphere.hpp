@@ -58,7 +58,7 @@ PressedSphere press_sphere(const ResponseField& field, const Contacts& contacts,
   c.first = c.x;
   Vec3<double> aside = Vec3<double>::Zero();  // x_c
   double lifted = 0, stiffer = 0;             // taken from d, from C_w mu
-  constexpr int passes = 3;                   // C_w hardly depends on a and on where
+  constexpr int passes = 3;                   // what the others ask of each other is small
   for (int pass = 0; pass < passes; ++pass) {
     c.a = out.radius;
     contacts.locate(c);
@@ -82,7 +82,7 @@ PressedSphere press_sphere(const ResponseField& field, const Contacts& contacts,
     aside *= fading(aside.squaredNorm(), 0.25 * c.a * c.a);
     lifted = 0.5 * (c.ball * lean.squaredNorm() + bent * aside.squaredNorm()) + lean.dot(slid) +
              2 * slope.dot(aside) + 1.5 * slope.dot(slid);
-    lifted *= fading(lifted * lifted, 0.0625 * depth * depth);
+    lifted *= fading(lifted * lifted, 0.01 * depth * depth);
     // Held as d_H is (sphere_contact.hpp).
     const double gone = std::clamp(P * own, -depth, depth), local = depth - gone,
                  most = 0.25 * disc_compliance(c.a, nu).normal,

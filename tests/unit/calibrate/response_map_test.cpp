@@ -76,7 +76,7 @@ TEST_CASE("a ball on a fitted map feels what the field answers to a contact that
   const auto fitted =
       ball_response_map(field, body, {.radius = ball, .depth = depth, .spacing = field.mesh().length / 3});
   // The worst is within the fixed region, where compliances are held and a curve has a kink.
-  CHECK(fitted.worst_rms < 0.25);  // 0.19 met
+  CHECK(fitted.worst_rms < 0.2);  // 0.17 met
   ContactSolver<Ellipsoid<double>, HertzMap<double>> solver({body, {}, fitted.map, {}, {}});
   ResponseTick<1> tick(field);
   const double beside = -0.03 + field.mesh().length;  // by the fixed region the stiffness rises within an edge
