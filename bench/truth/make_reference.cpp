@@ -237,6 +237,8 @@ class Reference {
                 mesh_.nodes.size(), mesh_.elements.size(), rubber_.equations(), surface_.node.size());
     std::fflush(stdout);
   }
+  Reference(const Reference&) = delete;  // the body refers to the mesh
+  Reference& operator=(const Reference&) = delete;
 
   void make() {
     write_surface(case_, surface_, region_, folder_);

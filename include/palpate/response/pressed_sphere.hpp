@@ -56,10 +56,10 @@ PressedSphere press_sphere(const ResponseField& field, const Contacts& contacts,
   const double softening = k != nullptr ? k->ball_softening * R / c.ball : 0;
   SphereForce<double> out{0, 0, std::sqrt(0.5 * R * (std::min)(depth, R))};
   c.first = c.x;
-  Vec3<double> aside = Vec3<double>::Zero();  // x_c
-  double lifted = 0, stiffer = 0;             // taken from d, from C_w mu
-  constexpr int passes = 3;                   // what the others ask of each other is small
-  for (int pass = 0; pass < passes; ++pass) {
+  Vec3<double> aside = Vec3<double>::Zero(), radial = aside;  // x_c; MovedByLoads
+  double local = depth, lifted = 0, stiffer = 0;              // d_H; taken from d, from C_w mu
+  constexpr int passes = 3;                                   // what the others ask of each other is small
+  for (int pass = 1; pass <= passes; ++pass) {
     c.a = out.radius;
     contacts.locate(c);
     const double own = c.m.dot(c.w * c.m);
@@ -80,21 +80,23 @@ PressedSphere press_sphere(const ResponseField& field, const Contacts& contacts,
                        slope = tangential(Vec3<double>(moved.tilting * c.P), c.m);
     aside = c.ball * lean - slid;
     aside *= fading(aside.squaredNorm(), 0.25 * c.a * c.a);
+    radial = moved.radial;
+    local = depth - std::clamp(P * own, -depth, depth);  // held as it is in sphere_contact.hpp
+    if (pass == passes) break;
     lifted = 0.5 * (c.ball * lean.squaredNorm() + bent * aside.squaredNorm()) + lean.dot(slid) +
              2 * slope.dot(aside) + 1.5 * slope.dot(slid);
     lifted *= fading(lifted * lifted, 0.01 * depth * depth);
-    // Held as d_H is (sphere_contact.hpp).
-    const double gone = std::clamp(P * own, -depth, depth), local = depth - gone,
-                 most = 0.25 * disc_compliance(c.a, nu).normal,
-                 dipole = -outward(nu) * P * (gone + k->ball_pull * local);
-    stiffer = 8.0 / 3 * k->ball_pull * outward(nu) * local * moved.radial.dot(c.m);
+    const double most = 0.25 * disc_compliance(c.a, nu).normal;
+    stiffer = 8.0 / 3 * k->ball_pull * outward(nu) * local * radial.dot(c.m);
     stiffer *= fading(stiffer * stiffer, most * most);
-    c.kept = kept(moved.size(dipole * moved.radial, dipole, Vec3<double>::Zero()), c);
-    c.dipole = c.kept * dipole;
-    c.spread = c.kept * k->ball_spread * local / R;
   }
   c.a = (std::max)(out.radius, 1e-9);
+  if (k == nullptr) return {out, Vec3<double>::Zero()};
   c.x = c.first + aside;
+  const double dipole = -outward(nu) * (out.force / mu) * (depth - local + k->ball_pull * local);
+  c.kept = kept(radial.norm() * std::abs(dipole), c);
+  c.dipole = c.kept * dipole;
+  c.spread = c.kept * k->ball_spread * local / R;
   return {out, mu * tangential(c.P, c.m)};
 }
 

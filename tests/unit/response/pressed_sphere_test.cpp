@@ -58,10 +58,10 @@ TEST_CASE("a ball where the body leans: it is pushed across in proportion to its
   for (const double depth : {0.5e-3, 2e-3}) {
     const SphereContact<double> in = on_flank(depth);
     const PressedSphere out = tick.solve(in);
-    CHECK(std::abs(out.across.dot(in.normal)) < 1e-12 * out.force);
+    CHECK(std::abs(out.across.dot(in.normal)) < 1e-12 * out.force);  // a rounding
     CHECK_RELATIVE(-out.on_body(in.normal).dot(in.normal), out.force, 1e-12);  // a rounding
     const double by_force = out.across.norm() / out.force / out.force;
-    if (last > 0) CHECK_RELATIVE(by_force, last, 0.1);
+    if (last > 0) CHECK_RELATIVE(by_force, last, 0.02);  // w is a mean over a contact that grows: 0.007 met
     last = by_force;
     CHECK(linear.solve(in).across.norm() < 1e-12 * out.force);
   }
@@ -81,7 +81,7 @@ TEST_CASE("a ball: absurd curvatures and depths end in bounded forces and fields
       CHECK((is_finite(out.force) && out.force >= 0 && is_finite(out.stiffness) && out.radius >= 0));
       tick.displace(display, u.data(), 3);
       // The field is held at 4 d on the solve mesh's vertices, which are all that are drawn.
-      for (const double x : u) CHECK(std::abs(x) < 10 * depth);
+      for (const double x : u) CHECK(std::abs(x) < 4.5 * depth);
     }
   CHECK(tick.solve(on_flank(std::numeric_limits<double>::quiet_NaN())).force == 0);
   CHECK(tick.solve(on_flank(-1e-3)).force == 0);
