@@ -102,18 +102,21 @@ inline palpate::MeshData<double> read_obj(const std::string& text) {
   return mesh;
 }
 
-/// A patch of the surface that is moved by depth * factor * direction.
+/// A patch of the surface that is moved by depth * factor * direction, and turned about its place by depth * turn.
 struct Patch {
   V place, normal, direction;  ///< normal: outward
   double radius, factor;       ///< [m], -
+  V turn = V::Zero();          ///< [rad/m]
 };
 inline std::vector<Patch> read_patches(const std::string& meta) {
   std::vector<Patch> patches;
   std::size_t at = meta.find("\"patches\"");
-  while (at != std::string::npos && (at = meta.find("\"centre_m\"", at + 1)) != std::string::npos)
+  while (at != std::string::npos && (at = meta.find("\"centre_m\"", at + 1)) != std::string::npos) {
+    const auto turn = numbers(meta, "turn_per_m", at, meta.find('}', at));
     patches.push_back({vector(numbers(meta, "centre_m", at)), -vector(numbers(meta, "inward_normal", at)),
                        vector(numbers(meta, "direction", at)), numbers(meta, "radius_m", at).at(0),
-                       numbers(meta, "depth_factor", at).at(0)});
+                       numbers(meta, "depth_factor", at).at(0), turn.empty() ? V(V::Zero()) : vector(turn)});
+  }
   return patches;
 }
 

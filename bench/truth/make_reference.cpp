@@ -4,8 +4,10 @@
 ///
 ///     make_reference NAME CASE_DIR fineness     without arguments: the names
 ///
-/// Stuck flat patches on rubber, pressed by their depth, or a frictionless ball. Needs gmsh as a command. Writes what truth_cases reads into CASE_DIR:
-/// meta.json, surface.obj, vertices.csv, displacement.csv, displacement_linear.csv (small strain), force.csv, force_linear.csv.
+/// Stuck flat patches on rubber, pressed by their depth and turned, or a frictionless ball. Needs gmsh as a command. Writes what truth_cases
+/// reads into CASE_DIR:
+/// meta.json, surface.obj, vertices.csv, displacement.csv, displacement_linear.csv (small strain), force.csv, force_linear.csv, with the
+/// torques about the patches' middles, where they have moved to.
 /// Vertices: the elements' nodes on the surface. fineness: patch radius over edges at its rim. Of a ball there is nothing linear.
 
 #include "truth/rubber.hpp"
@@ -35,6 +37,18 @@ V leaning(const V& normal, const V& aside, double lean) {
 Patch on_top(double x, double y, double z, double radius, double lean = 0) {
   return {{x, y, z}, V::UnitY(), leaning(V::UnitY(), V::UnitX(), lean), radius, 1};
 }
+// Tilted about the axis z by `turn` [rad] with each mm of depth, and pressed by `factor` of it.
+Patch turned(Patch p, double turn, double factor = 1) {
+  p.turn = turn * V::UnitZ();
+  p.factor = factor;
+  return p;
+}
+// About its inward normal, not pressed.
+Patch twisted(Patch p, double turn) {
+  p.turn = -turn * p.normal;
+  p.factor = 0;
+  return p;
+}
 // On an ellipsoid, `angle` degrees (of its parameter) from the top towards x.
 Patch on_flank(const V& axes, double angle, double radius, double lean = 0) {
   const double t = angle * std::acos(-1.0) / 180;
@@ -49,7 +63,7 @@ std::vector<Case> cases() {
   };
   const Body ellipsoid_t1{Body::ellipsoid, {60, 40, 40}, -36, true, true},
       a{Body::ellipsoid, {50, 35, 30}, -28, false, true}, A{Body::ellipsoid, {50, 45, 35}, -42, false, true};
-  const Body large = box(200, 100, 200, true);
+  const Body large = box(200, 100, 200, true), block = box(80, 50, 60);
   const V pushed = -V::UnitX();
   return {
       {"half_space",
@@ -77,6 +91,35 @@ std::vector<Case> cases() {
       {"S", box(90, 28, 100, true), 1, 0.49, {on_top(0, 28, 0, 5)}, {1, 2, 4, 6}},
       {"A", A, 1, 0.49, {on_flank(A.size, 50, 6, 30)}, {1, 2, 4, 6, 9}},
       {"D", box(100, 60, 80), 1, 0.49, {on_top(-20, 60, 0, 6), on_top(22, 60, 0, 8)}, {1, 2, 4, 6, 9}},
+      {"tilt", block, 1, 0.49, {turned(on_top(0, 50, 0, 6), 0.1, 0)}, {0.5, 1, 2, 3}},
+      {"tilt3", block, 1, 0.3, {turned(on_top(0, 50, 0, 6), 0.1, 0)}, {0.5, 1, 2, 3}},
+      {"tilt_edge", block, 1, 0.49, {turned(on_top(28, 50, 0, 6), 0.1, 0)}, {0.5, 1, 2, 3}},
+      {"tilt_pressed",
+       box(200, 100, 200),
+       1,
+       0.49,
+       {turned(on_top(0, 100, 0, 5), 0.06)},
+       {0.5, 1, 2, 3, 4, 5}},
+      {"tilt_pressed3",
+       box(200, 100, 200),
+       1,
+       0.3,
+       {turned(on_top(0, 100, 0, 5), 0.06)},
+       {0.5, 1, 1.5, 2, 2.5, 3}},
+      {"tilt_askew",
+       box(200, 100, 200),
+       1,
+       0.49,
+       {turned(on_top(0, 100, 0, 5, 35), 0.06)},
+       {0.5, 1, 2, 3, 4, 5}},
+      {"tilt_pressed_edge", block, 1, 0.49, {turned(on_top(28, 50, 0, 6), -0.04)}, {1, 2, 4, 6}},
+      {"tilt_flank", a, 1, 0.49, {turned(on_flank(a.size, 40, 4, 25), 0.06)}, {1, 2, 4}},
+      {"twist",
+       {Body::ellipsoid, a.size, a.held},
+       1,
+       0.49,
+       {twisted(on_flank(a.size, 40, 6), 0.1)},
+       {0.5, 1, 2, 3}},
       {"ball_t8", ellipsoid_t1, 1.5, 0.49, {on_top(0, 40, 0, 15)}, {0.5, 1, 2, 4, 8, 12}, true},
       {"ball_half_space", large, 1, 0.49, {on_top(0, 100, 0, 10)}, {0.5, 1, 2, 3, 4, 5}, true},
       {"ball_half_space3", large, 1, 0.3, {on_top(0, 100, 0, 10)}, {0.5, 1, 2, 3, 4, 5}, true},
@@ -202,7 +245,8 @@ void write_meta(const Case& c, const std::vector<double>& reached, const std::st
   for (const Patch& p : c.patches)
     patches += text(patches.empty() ? "" : ",\n", "{\"centre_m\": ", list(p.place / 1e3),
                     ", \"radius_m\": ", p.radius / 1e3, ", \"direction\": ", list(p.direction),
-                    ", \"inward_normal\": ", list(-p.normal), ", \"depth_factor\": ", p.factor, '}');
+                    ", \"inward_normal\": ", list(-p.normal), ", \"depth_factor\": ", p.factor,
+                    ", \"turn_per_m\": ", list(p.turn * 1e3), '}');
   const Patch& first = c.patches[0];
   const std::string ball = text("\"indenter\": {\"radius_m\": ", first.radius / 1e3,
                                 ", \"first_touch_point_m\": ", list(first.place / 1e3),
@@ -246,13 +290,17 @@ class Reference {
   }
 
  private:
+  struct Load {
+    V force, torque;  // [N], [N mm]
+  };
   struct Strides {
-    double longest, smallest, growth;  // growth: of a stride over the last one that found equilibrium; 0: stays
+    double longest, smallest,
+        growth;  // growth: of a stride over the last one that found equilibrium; 0: stays
   };
   struct Tables {
     Tables(const std::string& folder, const char* which)
         : shape(folder + "/displacement" + which + ".csv", "depth_m,vertex,ux,uy,uz\n"),
-          force(folder + "/force" + which + ".csv", "depth_m,patch,Fx,Fy,Fz\n") {}
+          force(folder + "/force" + which + ".csv", "depth_m,patch,Fx,Fy,Fz,Tx,Ty,Tz\n") {}
     File shape, force;
   };
 
@@ -268,15 +316,26 @@ class Reference {
   // The depths that were reached.
   std::vector<double> press_patches() {
     const Eigen::VectorXd rest = rubber_.state();
-    rubber_.step(motion(1), true);
-    const auto force = [this](std::size_t patch) { return patch_force(patch); };
+    rubber_.step(
+        motion([](const Patch& p, const V& r) { return V(p.factor * p.direction + p.turn.cross(r)); }), true);
     {
       const Tables linear(folder_, "_linear");
-      for (double depth : case_.depths) write(linear, depth, depth, force);
+      for (double depth : case_.depths)
+        write(linear, depth, depth, [this](std::size_t patch) { return patch_load(patch, 0); });
     }
     rubber_.reset(rest);
     const double a = case_.patches[0].radius;
-    return follow({a / 4, a / 50, 0}, [this](double, double by) { return rubber_.step(motion(by)); }, force);
+    double reached = 0;
+    return follow(
+        {a / 4, a / 50, 0},
+        [&](double from, double by) {
+          if (!rubber_.step(motion(
+                  [=](const Patch& p, const V& r) { return V(moved(p, r, from + by) - moved(p, r, from)); })))
+            return false;
+          reached = from + by;
+          return true;
+        },
+        [&](std::size_t patch) { return patch_load(patch, reached); });
   }
 
   std::vector<double> press_ball() {
@@ -295,13 +354,14 @@ class Reference {
       speed = (rubber_.state() - before) / by;
       return true;
     };
-    return follow({sphere.radius / 12, sphere.radius / 2000, 1.5}, press,
-                  [this](std::size_t) { return rubber_.sphere_force(); });
+    return follow({sphere.radius / 12, sphere.radius / 2000, 1.5}, press, [this](std::size_t) {
+      return Load{rubber_.sphere_force(), V::Zero()};
+    });
   }
 
-  // press(from, by): moves the tool on, false where there is no equilibrium; force(patch): of the part that is meshed.
-  template <class Press, class Force>
-  std::vector<double> follow(const Strides& strides, Press press, Force force) {
+  // press(from, by): moves the tool on, false where there is no equilibrium; load(patch): of the part that is meshed.
+  template <class Press, class LoadOf>
+  std::vector<double> follow(const Strides& strides, Press press, LoadOf load) {
     const Tables tables(folder_, "");
     double at = 0, stride = strides.longest;
     std::vector<double> reached;
@@ -322,45 +382,63 @@ class Reference {
         std::printf("  %.3f mm not reached\n", depth);
         break;
       }
-      write(tables, depth, 1, force);
+      write(tables, depth, 1, load);
       reached.push_back(depth);
     }
     return reached;
   }
 
-  // The patches' motion as they go `depth` deeper.
-  Eigen::VectorXd motion(double depth) const {
+  // How far a point of a patch, at r from its middle, has gone at `depth`.
+  static V moved(const Patch& p, const V& r, double depth) {
+    const double angle = depth * p.turn.norm();
+    return depth * p.factor * p.direction +
+           (angle > 0 ? V(Eigen::AngleAxisd(angle, p.turn.normalized()) * r - r) : V(V::Zero()));
+  }
+  // by(patch, r): of the patches' nodes.
+  template <class By>
+  Eigen::VectorXd motion(By by) const {
     Eigen::VectorXd d = Eigen::VectorXd::Zero(rubber_.state().size());
     for (std::size_t n = 0; n < mesh_.nodes.size(); ++n) {
       if (region_[n] <= 0) continue;
       const Patch& p = case_.patches[static_cast<std::size_t>(region_[n] - 1)];
+      const V u = by(p, V(mesh_.nodes[n] - p.place));
       for (int k = 0; k < 3; ++k)
-        if (!half_[k]) d[3 * static_cast<Eigen::Index>(n) + k] = depth * p.factor * p.direction[k];
+        if (!half_[k]) d[3 * static_cast<Eigen::Index>(n) + k] = u[k];
     }
     return d;
   }
-  V patch_force(std::size_t patch) const {
-    V F = V::Zero();
-    for (std::size_t n = 0; n < mesh_.nodes.size(); ++n)
-      if (region_[n] == static_cast<int>(patch) + 1)
-        F += rubber_.forces().segment<3>(3 * static_cast<Eigen::Index>(n));
-    return F;
+  Load patch_load(std::size_t patch, double depth) const {
+    Load out{V::Zero(), V::Zero()};
+    const Patch& p = case_.patches[patch];
+    for (std::size_t n = 0; n < mesh_.nodes.size(); ++n) {
+      if (region_[n] != static_cast<int>(patch) + 1) continue;
+      const V f = rubber_.forces().segment<3>(3 * static_cast<Eigen::Index>(n)), r = mesh_.nodes[n] - p.place;
+      out.force += f;
+      out.torque += (r + moved(p, r, depth) - moved(p, V::Zero(), depth)).cross(f);
+    }
+    return out;
   }
 
-  template <class Force>
-  void write(const Tables& tables, double depth, double scale, Force force) const {
+  template <class LoadOf>
+  void write(const Tables& tables, double depth, double scale, LoadOf load) const {
     for (std::size_t v = 0; v < surface_.node.size(); ++v) {
-      const V u = scale * rubber_.state().segment<3>(3 * surface_.node[v]).cwiseProduct(surface_.sign[v]) / 1e3;
+      const V u =
+          scale * rubber_.state().segment<3>(3 * surface_.node[v]).cwiseProduct(surface_.sign[v]) / 1e3;
       std::fprintf(tables.shape.file, "%.9g,%zu,%.9g,%.9g,%.9g\n", depth / 1e3, v, u.x(), u.y(), u.z());
     }
     for (std::size_t p = 0; p < case_.patches.size(); ++p) {
-      V F = scale * force(p);
-      for (int k = 0; k < 3; ++k)  // of the mirrored parts, too
+      auto [F, T] = load(p);
+      F *= scale;
+      T *= scale / 1e3;
+      for (int k = 0; k < 3;
+           ++k)  // of the mirrored parts, too: there the torque keeps what is along the mirror's normal
         if (half_[k]) {
           F *= 2;
           F[k] = 0;
+          T = 2 * T[k] * V::Unit(k);
         }
-      std::fprintf(tables.force.file, "%.9g,%zu,%.9g,%.9g,%.9g\n", depth / 1e3, p + 1, F.x(), F.y(), F.z());
+      std::fprintf(tables.force.file, "%.9g,%zu,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", depth / 1e3, p + 1, F.x(),
+                   F.y(), F.z(), T.x(), T.y(), T.z());
     }
   }
 

@@ -39,40 +39,42 @@ int main(int argc, char** argv) {
   palpate::ResponseTick<4> tick(field, {.second_order = argc <= 5});
   const palpate::ResponseDisplay display(field, mesh.vertices);
 
-  const std::vector<Patch> patches = read_patches(meta);
-  std::vector<palpate::ResponseContact<double>> contacts;
-  for (const Patch& patch : patches) contacts.push_back({.place = patch.place, .normal = patch.normal, .radius = patch.radius});
   FILE* displacement = std::fopen(argv[2], "w");
   FILE* force = std::fopen(argv[3], "w");
   std::fprintf(displacement, "depth_m,vertex,ux,uy,uz\n");
-  std::fprintf(force, "depth_m,patch,Fx,Fy,Fz\n");
+  std::fprintf(force, "depth_m,patch,Fx,Fy,Fz,Tx,Ty,Tz\n");
   std::vector<double> u(3 * mesh.vertices.size());
+  const auto write = [&](double depth, const std::vector<V>& F, const std::vector<V>& T) {
+    tick.displace(display, u.data(), 3);
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+      std::fprintf(displacement, "%.9g,%zu,%.9g,%.9g,%.9g\n", depth, v, u[3 * v], u[3 * v + 1], u[3 * v + 2]);
+    for (std::size_t c = 0; c < F.size(); ++c)
+      std::fprintf(force, "%.9g,%zu,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", depth, c + 1, F[c].x(), F[c].y(), F[c].z(), T[c].x(), T[c].y(), T[c].z());
+  };
+  const auto depths = numbers(meta, "depths_m");
   const std::size_t ball = meta.find("\"indenter\"");
   if (ball != std::string::npos) {
-    const V place = vector(numbers(meta, "first_touch_point_m", ball));
+    const V place = vector(numbers(meta, "first_touch_point_m", ball)), normal = -vector(numbers(meta, "inward_normal", ball));
+    const double radius = numbers(meta, "radius_m", ball).at(0);
     double curvature = 0;
     if (const auto axes = numbers(meta, "semi_axes_m"); !axes.empty()) {  // k1 + k2 of an ellipsoid: divergence of the unit normal
       const V weight = vector(axes).array().square().inverse(), g = place.cwiseProduct(weight);
       curvature = (weight.sum() - g.dot(weight.cwiseProduct(g)) / g.squaredNorm()) / g.norm();
     }
-    for (double depth : numbers(meta, "depths_m")) {
-      const V normal = -vector(numbers(meta, "inward_normal", ball));
-      const auto F = tick.solve(palpate::SphereContact<double>{place, normal, numbers(meta, "radius_m", ball).at(0), curvature, depth});
-      tick.displace(display, u.data(), 3);
-      for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-        std::fprintf(displacement, "%.9g,%zu,%.9g,%.9g,%.9g\n", depth, v, u[3 * v], u[3 * v + 1], u[3 * v + 2]);
-      const V f = F.on_body(normal);
-      std::fprintf(force, "%.9g,1,%.9g,%.9g,%.9g\n", depth, f.x(), f.y(), f.z());
+    for (double depth : depths) {
+      const auto pressed = tick.solve(palpate::SphereContact<double>{place, normal, radius, curvature, depth});
+      write(depth, {pressed.on_body(normal)}, {V::Zero()});
     }
-  } else for (double depth : numbers(meta, "depths_m")) {
-    std::vector<V> F(contacts.size());
-    for (std::size_t c = 0; c < contacts.size(); ++c) contacts[c].displacement = depth * patches[c].factor * patches[c].direction;
-    tick.solve(contacts.data(), contacts.size(), F.data());
-    tick.displace(display, u.data(), 3);
-    for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-      std::fprintf(displacement, "%.9g,%zu,%.9g,%.9g,%.9g\n", depth, v, u[3 * v], u[3 * v + 1], u[3 * v + 2]);
-    for (std::size_t c = 0; c < contacts.size(); ++c)
-      std::fprintf(force, "%.9g,%zu,%.9g,%.9g,%.9g\n", depth, c + 1, F[c].x(), F[c].y(), F[c].z());
+  } else {
+    const std::vector<Patch> patches = read_patches(meta);
+    for (double depth : depths) {
+      std::vector<palpate::ResponseContact<double>> contacts;
+      for (const Patch& p : patches)
+        contacts.push_back({.place = p.place, .normal = p.normal, .radius = p.radius, .displacement = depth * p.factor * p.direction, .rotation = depth * p.turn});
+      std::vector<V> F(contacts.size()), T(contacts.size());
+      tick.solve(contacts.data(), contacts.size(), F.data(), T.data());
+      write(depth, F, T);
+    }
   }
   std::fclose(displacement);
   std::fclose(force);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
 // Bodies that no closed form knows: concave, thin, in two pieces, with edges. No reference: what is checked is that the
-// answer is finite and bounded by theory, that it does not jump while the contact wanders, and that twice the solve
-// vertices change it by little. PALPATE_PATHS: paths over each body; docs/accuracy.md has the figures of 10,000.
+// answer is finite and bounded by theory, that it does not jump while the contact wanders (a third of them with the tool
+// turned), and that twice the solve vertices change it by little. PALPATE_PATHS: paths over each body; docs/accuracy.md has the figures of 10,000.
 
 #include <palpate/response/response_contact.hpp>
 
@@ -58,11 +58,16 @@ void try_body(const test::ResponseBody& body, double convergence) {
     }
     return m;
   };
+  const auto way_of =
+      [](const ResponseContact<double>& c) {  // of its middle, and of its edge by the tool's rotation
+        return std::hypot(c.displacement.norm(), c.radius * c.rotation.norm());
+      };
   for (int path = 0; path < paths; ++path) {
     const double a = size * std::array{0.01, 0.03, 0.06, 0.15, 0.4}[std::size_t(path) % 5], d = 0.2 * a;
+    const V rotation = path % 3 == 0 ? V(0.12, 0.06, 0.15) : V(V::Zero());  // tilt and twist
     test::Walker one(tree, body.mesh, 0.3 * h, unsigned(path)),
         two(tree, body.mesh, 0.3 * h, unsigned(path) + 1000000);
-    V last[2], F[2];
+    V last[2], last_torque[2], F[2], T[2];
     Both before_contacts, before_drawn;
     for (int i = 0; i < steps; ++i) {
       const V from[2] = {one.place, two.place}, turned[2] = {one.normal, two.normal};
@@ -73,28 +78,35 @@ void try_body(const test::ResponseBody& body, double convergence) {
             .place = w.place,
             .normal = w.normal,
             .radius = a,
-            .displacement = -d * w.normal + 0.3 * d * tangential(V(0.6, 0.3, 0.74), w.normal)};
+            .displacement = -d * w.normal + 0.3 * d * tangential(V(0.6, 0.3, 0.74), w.normal),
+            .rotation = rotation};
       };
       const Both both = {contact(one), contact(two)};
       const std::size_t count = path % 2 == 0 ? 1 : 2;
-      tick.solve(both.data(), count, F);
-      const double stiff =
-          mu * both[0].displacement.norm() / disc_compliance(a, body.nu).normal;  // half-space, at most
+      tick.solve(both.data(), count, F, T);
+      const double way = way_of(both[0]),
+                   stiff = mu * way / disc_compliance(a, body.nu).normal;  // half-space, at most
       const double moved = ((one.place - from[0]).norm() + (two.place - from[1]).norm()) / (std::min)(h, a) +
                            (one.normal - turned[0]).norm() + (two.normal - turned[1]).norm();
       double steep = 0;
       for (std::size_t c = 0; c < count; ++c) {
         REQUIRE(is_finite(F[c]));
-        steep = (std::max)(steep, (F[c] - last[c]).norm() / stiff);
+        REQUIRE(is_finite(T[c]));
+        steep = (std::max)(
+            {steep, (F[c] - last[c]).norm() / stiff, (T[c] - last_torque[c]).norm() / (stiff * a)});
         last[c] = F[c];
+        last_torque[c] = T[c];
       }
       // A fast change over a small way may be a jump: looked at closely.
       if (i > 0 && moved < 0.2 && steep > 0.05) {
         const auto change_of_force = [&](const Both& l, const Both& r) {
-          V Fl[2], Fr[2];
-          tick.solve(l.data(), count, Fl);
-          tick.solve(r.data(), count, Fr);
-          return ((Fl[0] - Fr[0]).norm() + (count > 1 ? (Fl[1] - Fr[1]).norm() : 0)) / stiff;
+          V Fl[2], Fr[2], Tl[2], Tr[2];
+          tick.solve(l.data(), count, Fl, Tl);
+          tick.solve(r.data(), count, Fr, Tr);
+          double apart = 0;
+          for (std::size_t c = 0; c < count; ++c)
+            apart += (Fl[c] - Fr[c]).norm() + (Tl[c] - Tr[c]).norm() / a;
+          return apart / stiff;
         };
         force_jump = (std::max)(force_jump, test::left_over(before_contacts, both, middle, change_of_force));
         tick.solve(both.data(), count, F);
@@ -102,19 +114,18 @@ void try_body(const test::ResponseBody& body, double convergence) {
       before_contacts = both;
       if (i % 20 == 0 || i % 20 == 1) {
         tick.displace(display, u.data(), 3);
-        const double d_norm = both[0].displacement.norm();
         const auto apart = [&](const std::vector<double>& l, const std::vector<double>& r) {
           double largest = 0;
           for (std::size_t k = 0; k < points.size(); ++k)
             largest = (std::max)(
                 largest,
                 V(l[3 * k] - r[3 * k], l[3 * k + 1] - r[3 * k + 1], l[3 * k + 2] - r[3 * k + 2]).norm());
-          return largest / d_norm;
+          return largest / way;
         };
         for (std::size_t k = 0; k < points.size(); ++k) {
           const V v(u[3 * k], u[3 * k + 1], u[3 * k + 2]);
           REQUIRE(is_finite(v));
-          most = (std::max)(most, v.norm() / d_norm);
+          most = (std::max)(most, v.norm() / way);
         }
         if (i % 20 == 1 && moved < 0.2 && apart(u, before) > 0.1) {
           const auto change_of_field = [&](const Both& l, const Both& r) {
@@ -135,8 +146,7 @@ void try_body(const test::ResponseBody& body, double convergence) {
         linear.solve(both.data(), 1, &coarse);
         linear.displace(display, u.data(), 3);
         for (std::size_t k = 0; k < points.size(); ++k)
-          most_linear = (std::max)(
-              most_linear, V(u[3 * k], u[3 * k + 1], u[3 * k + 2]).norm() / both[0].displacement.norm());
+          most_linear = (std::max)(most_linear, V(u[3 * k], u[3 * k + 1], u[3 * k + 2]).norm() / way);
         finer.solve(both.data(), 1, &better);
         stiffest = (std::max)(stiffest, coarse.norm() / stiff);
         if (one.place.y() > body.held_below + 2 * a)

@@ -20,7 +20,8 @@ constexpr std::size_t place_nodes = 3 * TouchMesh::most_parts;
 
 /// One contact placed and solved.
 struct PlacedContact {
-  Vec3<double> x, m, d;  ///< m: unit normal into the body
+  Vec3<double> x, m, d;   ///< m: unit normal into the body
+  Vec3<double> rotation;  ///< of the tool
   double a = 0;
   double least = 0;  ///< smaller compliance of the half-space, times mu
   double ball = 0;   ///< radius of the sphere; 0: stuck patch
@@ -35,13 +36,16 @@ struct PlacedContact {
   PatchTable::Level level;  ///< of the radius
   Mat3<double> w, C, S;     ///< correction, sum, times mu; the sum's inverse
   Vec3<double> rhs;
-  Vec3<double> P = Vec3<double>::Zero();        ///< force / mu
-  Vec3<double> extra = Vec3<double>::Zero();    ///< force / mu that the tool feels and the field does not
-  double dipole = 0;                            ///< / mu
-  double dn2 = 0, beta = 0;                     ///< delta_n d_n, delta_n / a, as the near terms take them
-  Vec3<double> delta_t = Vec3<double>::Zero();  ///< likewise
-  Vec3<double> tilt = Vec3<double>::Zero();     ///< / mu
-  Vec3<double> turn = Vec3<double>::Zero();     ///< its part of second order
+  Vec3<double> P = Vec3<double>::Zero();          ///< force / mu
+  Vec3<double> extra = Vec3<double>::Zero();      ///< force / mu that the tool feels and the field does not
+  double dipole = 0;                              ///< / mu
+  double dn2 = 0, beta = 0;                       ///< delta_n d_n, delta_n / a, as the near terms take them
+  Vec3<double> delta_t = Vec3<double>::Zero();    ///< likewise
+  Vec3<double> tilt = Vec3<double>::Zero();       ///< / mu
+  double twist = 0;                               ///< moment about m / mu
+  Vec3<double> tool_tilt = Vec3<double>::Zero();  ///< part of `tilt` by which the tool turns a narrow patch
+  Vec3<double> felt_tilt = Vec3<double>::Zero();  ///< what the tool feels of `tilt`
+  Vec3<double> turn = Vec3<double>::Zero();       ///< its part of second order
   Vec3<double> push = Vec3<double>::Zero();
   double kept = 0;                 ///< of second order
   double sag = 0;                  ///< how deep the patch's edge lies below its plane, at most
@@ -59,7 +63,20 @@ struct PlacedContact {
   [[nodiscard]] double loaded2() const noexcept { return (ball > 0 ? 0.6 : 1) * a * a; }
   [[nodiscard]] double seen_loaded2() const noexcept { return (ball > 0 ? 0.8 : 1) * a * a; }
 
-  void hold_moments() noexcept { held = -moments.give * (moments.G * P + moments.of_loads(dipole, tilt)); }
+  /// The slope of its normal displacement that the tool's rotation gives it.
+  [[nodiscard]] Vec3<double> lean() const noexcept { return m.cross(rotation); }
+  [[nodiscard]] bool is_turned() const noexcept { return rotation.squaredNorm() > 0; }
+  [[nodiscard]] bool has_loads() const noexcept { return dipole != 0 || is_turned(); }  ///< beside the force
+  /// The square of how far it goes: its middle, and its edge by the tool's rotation.
+  [[nodiscard]] double way2() const noexcept { return d.squaredNorm() + a * a * rotation.squaredNorm(); }
+
+  void hold_moments() noexcept {
+    held = moments.give * (moments.leaning(lean()) - moments.G * P - moments.of_loads(dipole, tilt));
+  }
+  /// Moment of tilt of the tool on the patch about its middle / mu.
+  [[nodiscard]] Vec3<double> felt() const noexcept {
+    return moments.share > 0 ? Vec3<double>(felt_tilt + moments.tilt(held)) : felt_tilt;
+  }
 };
 
 /// Of the nodes around the contact's place, interpolated: size or spacing.
@@ -159,6 +176,17 @@ void each_moment(const ResponseField& field, const PlacedContact& c, const Each&
       out.col(Eigen::Index(l)) +=
           ci.share * cj.share * j.weight * mean * loads_of_node(field, j.node, l == 0 ? 1 : 0, tilt[l]);
   }
+  return out;
+}
+/// By its unit twist about its m.
+[[nodiscard]] inline Vec3<double> coupling_of_twist(const ResponseField& field, const PlacedContact& ci,
+                                                    const PlacedContact& cj) noexcept {
+  const double near = ci.carried * cj.carried / (4 * std::numbers::pi);
+  const Vec3<double> r = ci.x - cj.x, p = tangential(r, cj.m);
+  Vec3<double> out = near * mean_disc(cj, r, p, std::hypot(ci.a, cj.a)).twist() * cj.m.cross(p);
+  for (const PatchWeight& i : ci.nodes)
+    for (const PatchWeight& j : cj.nodes)
+      out += ci.share * cj.share * i.weight * j.weight * field.at(i.node, j.node, 6);
   return out;
 }
 

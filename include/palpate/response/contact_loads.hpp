@@ -27,7 +27,7 @@ namespace palpate::detail {
 /// Share of a displacement that is kept: one of more than half of d, or whose force is more than half of the contact's, means that
 /// the series in depth has ended.
 [[nodiscard]] inline double kept(double size, const PlacedContact& c) noexcept {
-  return fading(size * size, 0.25 * c.d.squaredNorm());
+  return fading(size * size, 0.25 * c.way2());
 }
 [[nodiscard]] inline double kept_of_force(const Vec3<double>& u, const PlacedContact& c) noexcept {
   return fading((c.S * u).squaredNorm(), 0.25 * c.P.squaredNorm());
@@ -70,6 +70,39 @@ struct MovedByLoads {
   }
 };
 
+/// Moment of tilt of a stuck disc by its slope / mu, as far as it grips: 1 / D_near (patch_moments.hpp).
+[[nodiscard]] inline double tilt_stiffness(const PlacedContact& c, double nu) noexcept {
+  return c.grip * 8 * c.a * c.a * c.a / (3 * (1 - nu));
+}
+
+/// Moment about m of a stuck disc by its rotation / mu, likewise. A bent surface has less around the patch to shear: first order in the
+/// mean curvature H (docs/response_field.md), from the mean depth H a^2 / 2 of the patch's edge.
+[[nodiscard]] inline double twist_stiffness(const ResponseField& field, const PlacedContact& c) noexcept {
+  const double bent = 2 / c.a * field.table().edge(&MomentRow::droop, c.place.node, c.place.weight, c.a);
+  return c.grip * 16 * c.a * c.a * c.a / (3 + 6.75 / std::numbers::pi * std::clamp(bent, -0.5, 1.0));
+}
+/// Mean displacement of a contact's patch by w of its unit twist; by reciprocity, the twist of w by unit forces [1/m^2].
+[[nodiscard]] inline Vec3<double> moved_by_twist(const ResponseField& field,
+                                                 const PlacedContact& c) noexcept {
+  Vec3<double> u = Vec3<double>::Zero();
+  for (std::size_t i = 0; i < 3; ++i)
+    u += c.share * c.share * c.place.weight[Eigen::Index(i)] *
+         field.table().second_by_twist(c.place.node[i], c.level);
+  return u;
+}
+
+/// Sets the loads by which the tool turns its patch, and takes what they move it from `rhs`. Linear; before the forces.
+inline void turn_patch(const ResponseField& field, PlacedContact& c) noexcept {
+  const Vec3<double> lean = c.lean();
+  c.tool_tilt = (1 - c.moments.share) * tilt_stiffness(c, field.nu()) * lean;
+  c.twist = twist_stiffness(field, c) * c.rotation.dot(c.m);
+  // The half-space's own, by reciprocity with the tilt of a stuck disc in `press`.
+  Vec3<double> moved = MovedByLoads(field, c).by(0, c.tool_tilt) +
+                       0.5 * c.grip * stuck_load(c.a, field.nu()) * lean + c.twist * moved_by_twist(field, c);
+  if (c.moments.share > 0) moved += c.moments.G.transpose() * c.moments.give * c.moments.leaning(lean);
+  c.rhs -= kept(moved.norm(), c) * moved;
+}
+
 /// Sets the loads of a contact with P, and takes what they move its patch from `rhs`. `second_order`: null without.
 inline void press(const ResponseField& field, const SecondOrder* second_order, PlacedContact& c) noexcept {
   const double nu = field.nu(), stuck = stuck_load(c.a, nu);
@@ -79,15 +112,15 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
   // double force and what is drawn near the patch take twice as much.
   const double normal = c.P.dot(c.m);
   const Vec3<double> indentation = near.along * c.P + (near.normal - near.along) * normal * c.m;
-  const double most = c.d.norm(), length = indentation.norm();
+  const double most = std::sqrt(c.way2()), length = indentation.norm();
   const double local = length > most ? most / length : 1, twice = (std::min)(2 * local, 1.0);
   const Vec3<double> P = local * c.P;
   const double pushed = P.dot(c.m);
   const Vec3<double> dragged = P - pushed * c.m;
 
   const MovedByLoads moved(field, c);
-  // 1 / D_near of a tilt. What is held takes less than all of a compliance: held to half where a patch is wide for a thin part.
-  double stiff = c.grip * (1 - c.moments.share) * 8 * c.a * c.a * c.a / (3 * (1 - nu));
+  // What is held takes less than all of a compliance: held to half where a patch is wide for a thin part.
+  double stiff = (1 - c.moments.share) * tilt_stiffness(c, nu);
   const double taken = stiff * (2 * moved.radial.squaredNorm() + moved.tilting.squaredNorm()),
                whole = c.C.trace();
   stiff *= fading(taken * taken, 0.25 * whole * whole);
@@ -99,12 +132,17 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
   const double resolved = kept(moved.size(spread, c.dipole, c.tilt), c);
   c.dipole *= resolved;
   c.tilt *= resolved;
+  c.tilt += c.tool_tilt;
+  c.felt_tilt = c.tilt;
   c.rhs -= resolved * spread;
 
   if (second_order == nullptr) return;
   const SecondOrder& k = *second_order;
   const double depth = std::clamp(c.d.dot(c.m), -2 * c.a, 2 * c.a), indented = near.normal * pushed,
-               dipole = -outward(nu) * twice * normal * depth, delta = near.normal * twice * normal;
+               tilt_stiff = tilt_stiffness(c, nu), delta = near.normal * twice * normal;
+  const Vec3<double> lean = c.lean();
+  const double dipole =
+      -outward(nu) * twice * normal * depth - k.foreshortened * tilt_stiff * lean.squaredNorm();
   c.dn2 = delta * depth;
   c.beta = std::clamp(delta / c.a, 0.0, 2.0);
   c.delta_t = near.along * twice * tangential(c.P, c.m);
@@ -116,6 +154,8 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
   const double steep = indented / c.a;
   c.push = near.along * near.along * k.drag / (1 + steep * steep) * indented * dragged -
            near.normal * k.softening * indented * depth * c.m;
+  const Vec3<double> slipped = near.along * dragged;
+  c.push -= k.tip * c.a * (near.along * indented * lean + near.normal * slipped.dot(lean) * c.m);
   // The patch, too, would turn with the body (turned_field.hpp); it is held where it is. The tool feels that as `lever`. At most a
   // quarter of d, and of the force.
   const Vec3<double> going = 0.5 * (k.turned * gone + k.crossed * (c.d - gone)),
@@ -132,6 +172,7 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
   c.tilt += c.turn;
   c.rhs += share * (second - turned);
   c.kept = share;
+  c.felt_tilt -= share * (k.tip * c.a * indented * slipped + k.ease * c.beta * tilt_stiff * lean);
   // Two energies of third degree in P, of which the loads above are the derivatives by w's gradient; those by P are felt by the
   // tool only. D e: e is the surface's strain by w under the patch (by reciprocity radial . P), D = -outward delta_n P_n; that by
   // P_n is 2 D e / P_n. lever (P_n w_t - w_n P_t) . s, s the slope of w_n: a body that bends or turns beneath the patch moves it

@@ -53,8 +53,10 @@ struct ContactNear {
   Vec3<float> place, m;  ///< m: unit normal into the body
   Vec3<float> along;     ///< tangential part of the force / (4 pi mu)
   Vec3<float> tilt;      ///< moment of tilt / (4 pi mu)
+  float twist = 0;       ///< moment about m / (4 pi mu)
   Vec3<float> turn;      ///< slope at the patch's edge that is taken back outside, times s^-7
   Mat3<float> shear;     ///< in the patch's plane / (4 pi mu)
+  Mat3<float> turned;    ///< the tool's rotation less one
   Vec3<float> push;      ///< taken back outside the patch, times s^-8
   float normal = 0;      ///< normal part of the force / (4 pi mu)
   float dipole = 0;      ///< radial double force / (4 pi mu)
@@ -68,6 +70,7 @@ struct ContactNear {
   float sag = 0;         ///< how deep the patch's edge lies below its plane, at most
   bool second = false;   ///< any load beside the force
   bool tilted = false;   ///< tilt is not zero
+  bool twisted = false;  ///< twist is not zero
   bool sheared = false;  ///< shear is not zero
   bool ball = false;     ///< Hertz's weight
 
@@ -79,7 +82,7 @@ struct ContactNear {
     shear *= share;
     push *= share;
     slide *= share;
-    for (float* part : {&normal, &dipole, &radial, &radial_4, &radial_6, &normal_4, &normal_6})
+    for (float* part : {&normal, &twist, &dipole, &radial, &radial_4, &radial_6, &normal_4, &normal_6})
       *part *= share;
   }
   template <class V>
@@ -134,6 +137,12 @@ struct ContactNear {
       out.x += t.along * tilt.x();
       out.y += t.along * tilt.y();
       out.z += t.along * tilt.z();
+    }
+    if (twisted) {
+      const V around = twist * disc.twist();
+      out.x += around * (m.y() * pz - m.z() * py);
+      out.y += around * (m.z() * px - m.x() * pz);
+      out.z += around * (m.x() * py - m.y() * px);
     }
     if (sheared) {
       const V sx = shear(0, 0) * px + shear(0, 1) * py + shear(0, 2) * pz,

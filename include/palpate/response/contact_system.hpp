@@ -49,11 +49,11 @@ class ContactSystem {
   }
   [[nodiscard]] Contact& operator[](std::size_t c) noexcept { return contact_[c]; }
   [[nodiscard]] const Contact& operator[](std::size_t c) const noexcept { return contact_[c]; }
-  /// Largest d^2 of the first `count` contacts.
+  /// Largest square of a way of the first `count` contacts.
   [[nodiscard]] double deepest2(std::size_t count) const noexcept {
-    double d2 = 0;
-    for (std::size_t c = 0; c < count; ++c) d2 = (std::max)(d2, contact_[c].d.squaredNorm());
-    return d2;
+    double way2 = 0;
+    for (std::size_t c = 0; c < count; ++c) way2 = (std::max)(way2, contact_[c].way2());
+    return way2;
   }
 
   /// P of the first `count` contacts, all located: first by the forces alone; they give the further loads.
@@ -65,23 +65,42 @@ class ContactSystem {
       }
     for (std::size_t i = 0; i < count; ++i)
       if (contact_[i].moments.share > 0) widen(contact_[i]);
+    for (std::size_t i = 0; i < count; ++i)
+      if (contact_[i].is_turned()) turn_by_tool(i, count);
     solve_once(count);
     if constexpr (Capacity > 1)
       if (count > 1) bend(count);
     bool any = false;
     for (std::size_t i = 0; i < count; ++i) {
       press(*field_, second_order(), contact_[i]);
-      any = any || contact_[i].dipole != 0;
+      any = any || contact_[i].has_loads();
     }
     if (any) solve_once(count);
     for (std::size_t i = 0; i < count; ++i)
       if (contact_[i].moments.share > 0) contact_[i].hold_moments();
   }
 
+  /// Of the tool on patch i of `count`, solved, about its middle where it has moved to / mu. Held against w's twist, of which the field
+  /// knows nothing. That takes less than all of a compliance: held to half where a patch is wide for a thin part.
+  [[nodiscard]] Vec3<double> torque(std::size_t i, std::size_t count) const noexcept {
+    const Contact& c = contact_[i];
+    const double stiff = twist_stiffness(*field_, c);
+    const auto twisted = [stiff](const Vec3<double>& by_force, const Contact& pushed) {
+      const double taken = stiff * by_force.squaredNorm(), whole = pushed.C.trace();
+      return fading(taken * taken, 0.25 * whole * whole) * by_force.dot(pushed.P);
+    };
+    double angle = twisted(moved_by_twist(*field_, c), c);
+    for (std::size_t j = 0; j < count; ++j)
+      if (j != i) angle += twisted(coupling_of_twist(*field_, contact_[j], c), contact_[j]);
+    return c.felt().cross(c.m) + (c.twist - stiff * angle) * c.m;
+  }
+
   void locate(Contact& c) const noexcept {
-    c.dipole = c.spread = c.dn2 = c.beta = c.kept = 0;
+    c.dipole = c.twist = c.spread = c.dn2 = c.beta = c.kept = 0;
     c.delta_t.setZero();
     c.tilt.setZero();
+    c.tool_tilt.setZero();
+    c.felt_tilt.setZero();
     c.turn.setZero();
     c.push.setZero();
     c.held.setZero();
@@ -93,7 +112,7 @@ class ContactSystem {
     const double size = mean_of(&TouchNode::size, *field_, c),
                  spacing = mean_of(&TouchNode::spacing, *field_, c);
     c.level = field_->table().level(averaged(c, spacing));
-    c.sag = field_->table().sag(c.place.node, c.place.weight, c.a);
+    c.sag = field_->table().edge(&MomentRow::sag, c.place.node, c.place.weight, c.a);
     // Far from the surface the nearest place may jump; there w has faded away.
     const double far2 = c.place.distance2 / (size * size);
     c.share = 1 / (1 + far2 * far2);
@@ -206,6 +225,13 @@ class ContactSystem {
     near.nu = static_cast<float>(nu);
     near.second = dipole != 0 || c.ball > 0;
     near.tilted = tilt.squaredNorm() > 0;
+    near.twist = static_cast<float>(scale * c.twist);
+    near.twisted = c.twist != 0;
+    if (c.is_turned()) {
+      const double angle = c.rotation.norm();
+      const Eigen::AngleAxis<double> turned(angle, c.rotation / angle);
+      near.turned = (turned.toRotationMatrix() - Mat3<double>::Identity()).template cast<float>();
+    }
     near.ball = c.ball > 0;
     return near;
   }
@@ -242,10 +268,10 @@ class ContactSystem {
   void loosen(std::size_t count) noexcept {
     for (std::size_t i = 0; i < count; ++i) {
       Contact& c = contact_[i];
-      const double d2 = c.d.squaredNorm();
+      const double d2 = c.way2();
       Vec3<double> u = Vec3<double>::Zero();
       for (std::size_t j = 0; j < count; ++j) {
-        const double deeper = contact_[j].d.squaredNorm();
+        const double deeper = contact_[j].way2();
         if (!(deeper > d2)) continue;
         u +=
             smooth(std::sqrt(deeper / (d2 + tiny)) - 1) * (by(i, j).forces * (contact_[j].S * contact_[j].d));
@@ -259,6 +285,16 @@ class ContactSystem {
   [[nodiscard]] static double smooth(double x) noexcept {
     const double t = std::clamp(x, 0.0, 1.0);
     return t * t * (3 - 2 * t);
+  }
+  // The tool turns patch i; the others feel its twist at once, its tilt with the other loads.
+  void turn_by_tool(std::size_t i, std::size_t count) noexcept {
+    Contact& c = contact_[i];
+    turn_patch(*field_, c);
+    for (std::size_t j = 0; j < count; ++j) {
+      if (j == i) continue;
+      const Vec3<double> moved = c.twist * coupling_of_twist(*field_, contact_[j], c);
+      contact_[j].rhs -= kept(moved.norm(), c) * moved;
+    }
   }
   // What the forces do beneath the other contacts' patches.
   void bend(std::size_t count) noexcept {
@@ -282,7 +318,7 @@ class ContactSystem {
       put(system, i, i, contact_[i].C);
       for (std::size_t j = 0; j < i; ++j) put(system, i, j, root[i] * root[j] * by(i, j).forces);
       for (std::size_t j = 0; j < count; ++j) {
-        if (i == j || contact_[j].dipole == 0) continue;
+        if (i == j || !contact_[j].has_loads()) continue;
         const Contact& cj = contact_[j];
         const Mat3<double>& moved = by(i, j).moments;
         const Vec3<double> loads(cj.dipole, cj.tilt.dot(cj.t1()), cj.tilt.dot(cj.t2()));

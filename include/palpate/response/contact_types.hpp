@@ -9,21 +9,24 @@
 
 namespace palpate {
 
-/// A stuck flat patch: every surface point within `radius` of `place` moves by `displacement`.
+/// A stuck flat patch: every surface point within `radius` of `place` moves by `displacement` and turns about `place` by `rotation`.
 template <Real S>
 struct ResponseContact {
   Vec3<S> place = Vec3<S>::Zero();         ///< on the undeformed surface [m]
   Vec3<S> normal = Vec3<S>::UnitZ();       ///< outward, unit
   S radius = S(0);                         ///< a > 0 [m]
   Vec3<S> displacement = Vec3<S>::Zero();  ///< d; d.normal < 0 presses [m]
+  Vec3<S> rotation =
+      Vec3<S>::Zero();  ///< vector of the tool's since it touched [rad]; accurate to 0.3, below a half turn
 };
 
-/// True when a contact is finite, of sensible size, with a unit normal.
+/// True when a contact is finite, of sensible size, with a unit normal, turned by less than a half turn.
 template <Real S>
 [[nodiscard]] inline bool is_usable(const ResponseContact<S>& c) noexcept {
   const S limit = S(1e6);
   return is_finite(c.place) && is_finite(c.displacement) && is_finite(c.normal) && is_finite(c.radius) &&
-         c.radius > S(1e-9) && c.radius < limit && c.place.cwiseAbs().maxCoeff() < limit &&
+         is_finite(c.rotation) && c.rotation.squaredNorm() < S(9.8) && c.radius > S(1e-9) &&
+         c.radius < limit && c.place.cwiseAbs().maxCoeff() < limit &&
          c.displacement.cwiseAbs().maxCoeff() < limit && c.normal.cwiseAbs().maxCoeff() < S(2) &&
          std::abs(c.normal.squaredNorm() - S(1)) < S(1e-3);
 }
@@ -47,8 +50,9 @@ struct DeepFactor {
 /// Constants of second order in depth and more, for a stuck patch on neo-Hookean rubber; depth <= 2 a. They are those of nu = 1/2;
 /// `at(nu)` is what is used, below 0.3 that of 0.3. What is drawn near the patch (DeepFactor, contact_near.hpp) was fitted at nu = 0.49 on
 /// finite elements of a half-space alone, pressed normally and askew; the rest on pushes into a cube, a block, a wall and two ellipsoids, but
-/// `turned` and `crossed` on all references of docs/accuracy.md, those of a sphere on a half-space, a block, a slab and two ellipsoids; the
-/// change with nu on one normal and one skew push and one sphere at 0.3. Rounded, used for every body.
+/// `turned` and `crossed` on all references of docs/accuracy.md; those of a patch that the tool turns on a half-space and a block; those of a
+/// sphere on a half-space, a block, a slab and two ellipsoids; the change with nu on one normal, one skew and one tilted push and one sphere at
+/// 0.3. Rounded, used for every body.
 /// delta_n, delta_t: local indentation, the displacement of a half-space by the same force, normal and tangential; w_n, w_t: the rest,
 /// by which the body as a whole gives way; s: slope of w_n under the patch. Without constants: the radial double force
 /// -nu / (1 - nu) F_n d_n, F_n at most twice the half-space's, and the force by which a body that spreads under the patch stiffens.
@@ -66,6 +70,12 @@ struct SecondOrder {
   double softening = 0.36;  ///< normal force -softening mu delta_n d_n; times 1 - 2.5 b
   double turned = 0.7;      ///< displacement by the rotation of w (turned_field.hpp); the same for every nu
   double crossed = 0.3;     ///< by w's and the near field's together; the same for every nu
+  // Of a patch that the tool turns, s the slope that its normal displacement gets.
+  double tip = 1.85;  ///< energy -tip mu a delta_n delta_t . s; times 1 - b
+  double ease =
+      0.13;  ///< of the moment of tilt that the tool feels, times delta_n / a; the same for every nu
+  double foreshortened =
+      1;  ///< radial double force -foreshortened s^2 over a tilt's compliance; the same for every nu
   // Of a frictionless sphere (pressed_sphere.hpp).
   double ball_pull = 0.33;  ///< radial double force -nu / (1 - nu) F (C_w F + ball_pull d_H)
   double ball_spread =
@@ -83,6 +93,7 @@ struct SecondOrder {
     out.slide = lessened(slide);
     out.drag *= 1 + 1.3 * b;
     out.softening *= less;
+    out.tip *= 1 - b;
     out.ball_spread *= 1 + 1.7 * b;
     out.ball_softening *= 1 - 7 * b;
     return out;

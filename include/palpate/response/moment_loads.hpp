@@ -21,6 +21,7 @@ struct MomentRow {
   float mean[5][3] = {};  ///< means of the loads' fields w [1/m^2]
   float own[15] = {};     ///< their moments, lower triangle by row [1/m^3]
   float sag = 0;          ///< how deep the patch's edge lies below its plane, at most [m]
+  float droop = 0;        ///< in the mean [m]
 };
 
 namespace detail {
@@ -106,20 +107,27 @@ template <class Column, class See>
   return out;
 }
 
-/// Of a patch of radius s around node k. Of six places on the edge of a quadric's patch one is within 30 degrees of its deepest.
-[[nodiscard]] inline double find_sag(const TouchMesh& touch, std::size_t k, double s) {
+/// `sag` and `droop` of a patch of radius s around node k. Of six places on the edge of a quadric's patch one is within 30 degrees of its
+/// deepest; the mean bend is known from the node's spacing on.
+inline void find_edge(const TouchMesh& touch, std::size_t k, double s, MomentRow& row) {
   const TouchNode& node = touch.nodes()[k];
   const Vec3<double> t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
-  double deepest = 0;
-  for (std::size_t i = 0; i < 6; ++i) {
-    const double angle = double(i) * std::numbers::pi / 3;
-    const Vec3<double> x = node.source + s * (std::cos(angle) * t1 + std::sin(angle) * t2);
-    const TouchPlace at = touch.locate(x);
-    Vec3<double> y = Vec3<double>::Zero();
-    for (std::size_t c = 0; c < 3; ++c) y += at.weight[Eigen::Index(c)] * touch.nodes()[at.node[c]].source;
-    deepest = (std::max)(deepest, (x - y).dot(node.normal));
-  }
-  return 4.0 / 3 * deepest;
+  const auto each_depth = [&](double radius, const auto& each) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double angle = double(i) * std::numbers::pi / 3;
+      const Vec3<double> x = node.source + radius * (std::cos(angle) * t1 + std::sin(angle) * t2);
+      const TouchPlace at = touch.locate(x);
+      Vec3<double> y = Vec3<double>::Zero();
+      for (std::size_t c = 0; c < 3; ++c) y += at.weight[Eigen::Index(c)] * touch.nodes()[at.node[c]].source;
+      each((x - y).dot(node.normal));
+    }
+  };
+  double deepest = 0, sum = 0;
+  each_depth(s, [&](double depth) { deepest = (std::max)(deepest, depth); });
+  const double known = (std::max)(s, node.spacing), less = s / known;
+  each_depth(known, [&](double depth) { sum += depth; });
+  row.sag = static_cast<float>(4.0 / 3 * deepest);
+  row.droop = static_cast<float>(less * less * sum / 6);
 }
 
 }  // namespace detail

@@ -100,6 +100,12 @@ struct PatchMoments {
     loads << dipole, 0, 0, tilt.dot(t1), tilt.dot(t2);
     return W * loads;
   }
+  /// Moments of a patch that slopes.
+  [[nodiscard]] Moments leaning(const Vec3<double>& slope) const noexcept {
+    Moments out;
+    out << 0, 0, 0, slope.dot(t1), slope.dot(t2);
+    return out;
+  }
   /// Loads as a tensor A: a node's force is A q (moment_loads.hpp).
   [[nodiscard]] Mat3<double> tensor(const Moments& y) const noexcept {
     return y[0] * Mat3<double>::Identity() + shear(y) + 2 * m * tilt(y).transpose();

@@ -32,7 +32,7 @@ class PatchTable {
   };
   struct Second {
     float mean
-        [9];  ///< of the unit radial double force and the unit tilts along the node's two tangents [1/m^2]
+        [12];  ///< of the unit radial double force, the unit tilts along the node's two tangents, the unit twist [1/m^2]
   };
   using Moments = MomentRow;
   using Share = TouchMesh::Share;
@@ -49,7 +49,7 @@ class PatchTable {
         spread_begin_(std::move(spread_begin)),
         spread_(std::move(spread)) {}
 
-  /// `column(k, l)` points to the field of load l (three forces, double force, two tilts) of node k: x of every vertex,
+  /// `column(k, l)` points to the field of load l (ResponseField::loads) of node k: x of every vertex,
   /// y and z `stride` further each.
   template <class Column>
   PatchTable(const SolveMesh& mesh, const BendTable& bends, const TouchMesh& touch, unsigned threads,
@@ -78,7 +78,7 @@ class PatchTable {
         for (const Weight& v : at[node]) each(v.node, v.weight);
       };
       moments_[i] = detail::find_moments(touch, k, spread(k, i % levels_), stride, column, see);
-      moments_[i].sag = static_cast<float>(detail::find_sag(touch, k, std::sqrt(radius2(i % levels_))));
+      detail::find_edge(touch, k, std::sqrt(radius2(i % levels_)), moments_[i]);
     });
     std::vector<std::vector<std::uint32_t>> around(n);  // triangles
     for (std::uint32_t t = 0; t < touch.triangles().size(); ++t)
@@ -115,12 +115,13 @@ class PatchTable {
               if (corner[j] == k) pairs[t * levels_ + level][3 * i + j] = mean;
           }
         }
-        for (std::size_t l = 0; l < 3; ++l) {
+        for (std::size_t l = 0; l < 4; ++l) {
           Vec3<double> u = Vec3<double>::Zero();
           for (const Weight& q : loaded[k * levels_ + level]) {
-            const Vec3<double> load = q.weight * (l == 0 ? Vec3<double>(Vec3<double>::UnitX())
-                                                         : in_tangents(touch, q.node, tangent(touch, k, l)));
-            for (std::size_t i = 0; i < 3; ++i)
+            const Eigen::Vector4d load =
+                q.weight * (l == 1 || l == 2 ? in_tangents(touch, q.node, tangent(touch, k, l))
+                                             : Eigen::Vector4d(Eigen::Vector4d::Unit(Eigen::Index(l))));
+            for (std::size_t i = 0; i < 4; ++i)
               if (load[Eigen::Index(i)] != 0)
                 for (const Weight& w : seen[k * levels_ + level])
                   u += load[Eigen::Index(i)] * w.weight * read(column(q.node, 3 + i), stride, w.node);
@@ -175,20 +176,27 @@ class PatchTable {
     const Nine low(second_[k * levels_ + at.below].mean), high(second_[k * levels_ + at.below + 1].mean);
     return (1 - at.part) * low.cast<double>() + at.part * high.cast<double>();
   }
+  /// Of its twist.
+  [[nodiscard]] Vec3<double> second_by_twist(std::size_t k, const Level& at) const noexcept {
+    using Three = Eigen::Map<const Vec3<float>>;
+    const Three low(second_[k * levels_ + at.below].mean + 9),
+        high(second_[k * levels_ + at.below + 1].mean + 9);
+    return (1 - at.part) * low.cast<double>() + at.part * high.cast<double>();
+  }
   /// Solved nodes that share a load that is spread over a patch of the radius of `level` around node k. What is missing from 1
   /// falls on what is held.
   [[nodiscard]] std::span<const Share> spread(std::size_t k, std::size_t level) const noexcept {
     const std::size_t i = k * levels_ + level;
     return {spread_.data() + spread_begin_[i], spread_begin_[i + 1] - spread_begin_[i]};
   }
-  /// How deep the edge of a patch of radius a lies below its plane, at most.
-  [[nodiscard]] double sag(const std::array<std::uint32_t, 3>& node, const Vec3<double>& l,
-                           double a) const noexcept {
+  /// `sag` or `droop` of a patch of radius a.
+  [[nodiscard]] double edge(float Moments::*depth, const std::array<std::uint32_t, 3>& node,
+                            const Vec3<double>& l, double a) const noexcept {
     const Level at = level(a * a);
     double out = 0;
     for (std::size_t i = 0; i < 3; ++i)
-      out += l[Eigen::Index(i)] * ((1 - at.part) * double(moments(node[i], at.below).sag) +
-                                   at.part * double(moments(node[i], at.below + 1).sag));
+      out += l[Eigen::Index(i)] * ((1 - at.part) * double(moments(node[i], at.below).*depth) +
+                                   at.part * double(moments(node[i], at.below + 1).*depth));
     return out;
   }
   [[nodiscard]] const Moments& moments(std::size_t k, std::size_t level) const noexcept {
@@ -220,9 +228,9 @@ class PatchTable {
     const Vec3<double> t1 = perpendicular(n);
     return number == 1 ? t1 : Vec3<double>(n.cross(t1));
   }
-  [[nodiscard]] static Vec3<double> in_tangents(const TouchMesh& touch, std::size_t k,
-                                                const Vec3<double>& tilt) {
-    return {0, tilt.dot(tangent(touch, k, 1)), tilt.dot(tangent(touch, k, 2))};
+  [[nodiscard]] static Eigen::Vector4d in_tangents(const TouchMesh& touch, std::size_t k,
+                                                   const Vec3<double>& tilt) {
+    return {0, tilt.dot(tangent(touch, k, 1)), tilt.dot(tangent(touch, k, 2)), 0};
   }
   [[nodiscard]] double radius2(std::size_t level) const noexcept {
     return level == 0 ? 0 : std::ldexp(unit_, int(level) - 1);

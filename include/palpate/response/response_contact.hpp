@@ -31,12 +31,15 @@ class ResponseTick {
     patch_.reserve(weight_.size());
   }
 
-  /// Forces that the tool exerts on the object, one per contact [N]. More than `Capacity` contacts: the surplus gets no
+  /// Forces that the tool exerts on the object, one per contact [N]; with `torques` its torques about the patches' middles, where they
+  /// have moved to [N m]. More than `Capacity` contacts: the surplus gets no
   /// force, region_overflow. A contact that is not finite, or whose radius or normal is absurd: no forces and no field
   /// for any, invalid_pose.
   template <Real S>
-  Status solve(const ResponseContact<S>* contacts, std::size_t count, Vec3<S>* forces) noexcept {
+  Status solve(const ResponseContact<S>* contacts, std::size_t count, Vec3<S>* forces,
+               Vec3<S>* torques = nullptr) noexcept {
     for (std::size_t c = 0; c < count; ++c) forces[c].setZero();
+    for (std::size_t c = 0; c < count && torques != nullptr; ++c) torques[c].setZero();
     count_ = (std::min)(count, Capacity);
     Status status = count > Capacity ? Status::region_overflow : Status::ok;
     for (std::size_t c = 0; c < count_; ++c) {
@@ -48,6 +51,7 @@ class ResponseTick {
       k.x = contacts[c].place.template cast<double>();
       k.m = -contacts[c].normal.template cast<double>().normalized();
       k.d = contacts[c].displacement.template cast<double>();
+      k.rotation = contacts[c].rotation.template cast<double>();
       k.a = double(contacts[c].radius);
       k.ball = 0;
       contact_.locate(k);
@@ -57,6 +61,8 @@ class ResponseTick {
     const double mu = field_->shear_modulus();
     for (std::size_t c = 0; c < count_; ++c)
       forces[c] = (mu * (contact_[c].P + contact_[c].extra)).template cast<S>();
+    for (std::size_t c = 0; c < count_ && torques != nullptr; ++c)
+      torques[c] = (mu * contact_.torque(c, count_)).template cast<S>();
     return status | Status::contact;
   }
 
@@ -71,6 +77,7 @@ class ResponseTick {
     c.x = in.place.template cast<double>();
     c.m = -in.normal.template cast<double>().normalized();
     c.d = double(in.depth) * c.m;
+    c.rotation.setZero();
     c.ball = double(in.radius);
     count_ = 1;
     return detail::press_sphere(*field_, contact_, c, double(in.curvature));
@@ -133,7 +140,7 @@ class ResponseTick {
         sum += f[0] * column(node, 0) + f[1] * column(node, 1) + f[2] * column(node, 2);
       }
       for (auto node : patch_) weight_[node] = 0;
-      if (k.dipole != 0) add_second(k);
+      if (k.has_loads()) add_second(k);
       detail::ContactNear& near = near_field_[c] = contact_.near_of(k);
       if (carried < 1) near.scale(static_cast<float>(carried));
       float* own = &near_[c * 3 * n];
@@ -204,8 +211,9 @@ class ResponseTick {
         second += g[0] * column(3) + g[1] * column(4) + g[2] * column(5);
       else
         second += g[0] * column(3);
+      if (c.twist != 0) second += static_cast<float>(c.share * at.weight * c.twist) * column(6);
     }
-    const double share = detail::fading(largest(second_), 4 * c.d.squaredNorm());
+    const double share = detail::fading(largest(second_), 4 * c.way2());
     Eigen::Map<Eigen::ArrayXf>(total_.data(), size) += static_cast<float>(share) * second;
   }
 

@@ -218,7 +218,7 @@ class ResponseDrawing {
       emit(i + k, Lane3{four_of(u.x, k), four_of(u.y, k), four_of(u.z, k)});
   }
 
-  // The patch moves by d, as far as the contact grips; beneath a ball the surface lies on it.
+  // The patch moves by d and turns with the tool, as far as the contact grips; beneath a ball the surface lies on it.
   template <class V>
   static void hold(const PlacedContact& c, const ContactNear& near, const Axes<V>& at, float reach,
                    Axes<V>& u) noexcept {
@@ -237,9 +237,16 @@ class ResponseDrawing {
     // Over to the field outside within a fiftieth of the radius: a vertex that comes in moves fast, and does not jump.
     const Vec3<float> d = c.d.template cast<float>();
     const V inside = between(V(51.f - 50.f / near.a * root(r2)), 0, 1) * static_cast<float>(c.grip);
-    u.x += inside * (d.x() - u.x);
-    u.y += inside * (d.y() - u.y);
-    u.z += inside * (d.z() - u.z);
+    Axes<V> to{splat<V>(d.x()), splat<V>(d.y()), splat<V>(d.z())};
+    if (c.is_turned()) {
+      const Mat3<float>& t = near.turned;
+      to.x += t(0, 0) * rx + t(0, 1) * ry + t(0, 2) * rz;
+      to.y += t(1, 0) * rx + t(1, 1) * ry + t(1, 2) * rz;
+      to.z += t(2, 0) * rx + t(2, 1) * ry + t(2, 2) * rz;
+    }
+    u.x += inside * (to.x - u.x);
+    u.y += inside * (to.y - u.y);
+    u.z += inside * (to.z - u.z);
   }
 
   const ResponseField* field_;

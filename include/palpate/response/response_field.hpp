@@ -10,8 +10,8 @@
 /// | nu     | Poisson's ratio               | -    | [0, 1/2]; 1/2 is exact, nothing locks   |
 /// | n      | vertices of the solve mesh    | -    | [20, 5000]; error about 1/n             |
 ///
-/// Memory: 72 n m bytes for the columns, m the places of loads (load_places.hpp): with n = 600 29 MB for a smooth body, 80 to
-/// 95 MB for one that is all next to its edges, as a block; see `memory()`. During set-up about twice that and 150 n^2 bytes more.
+/// Memory: 84 n m bytes for the columns, m the places of loads (load_places.hpp): with n = 600 34 MB for a smooth body, 95 to
+/// 110 MB for one that is all next to its edges, as a block; see `memory()`. During set-up about twice that and 150 n^2 bytes more.
 /// Set-up: O(n^3), seconds. Several pieces are allowed, each held somewhere.
 /// Limits: small strain per unit load; parts thinner than an edge of the solve mesh bend too little: `unresolved_area()`.
 /// Reports (error.hpp) bad E, nu, mesh or fixed region. Source: [brebbia1984], [james1999].
@@ -50,8 +50,9 @@ class ResponseField {
     unsigned threads = 2;                       ///< at set-up only; see parallel.hpp for hosts without
     std::function<void(double)> progress = {};  ///< called in the calling thread with what is done, 0 to 1
   };
-  /// Fields per solved node of the touch mesh: unit forces along x, y, z; unit radial double force; unit tilts along its two tangents.
-  static constexpr std::size_t loads = 6;
+  /// Fields per solved node of the touch mesh: unit forces along x, y, z; unit radial double force; unit tilts along its two tangents; unit twist
+  /// about its inward normal.
+  static constexpr std::size_t loads = 7;
 
   /// `fixed` is true where the object is held; the mesh is cut along its boundary.
   template <Real S>
@@ -215,7 +216,7 @@ class ResponseField {
     report(1);
   }
 
-  // Double force and tilts: derivatives of the forces' fields by their place.
+  // Double force, tilts and twist: derivatives of the forces' fields by their place.
   void derive(const detail::LoadPlaces& places, std::size_t k) {
     using Row = Eigen::Map<const Eigen::ArrayXf>;
     const auto size = static_cast<Eigen::Index>(3 * stride_);
@@ -223,7 +224,9 @@ class ResponseField {
     for (std::size_t l = 3; l < loads; ++l) {
       Eigen::Map<Eigen::ArrayXf> sum(&columns_[(loads * k + l) * 3 * stride_], size);
       for (const auto& w : places.gradient(k)) {
-        const Vec3<double> f = l == 3 ? Vec3<double>(0.5 * w.g) : Vec3<double>(w.g.dot(l == 4 ? t1 : t2) * m);
+        const Vec3<double> f = l == 3   ? Vec3<double>(0.5 * w.g)
+                               : l == 6 ? Vec3<double>(0.5 * m.cross(w.g))
+                                        : Vec3<double>(w.g.dot(l == 4 ? t1 : t2) * m);
         for (int i = 0; i < 3; ++i)
           sum += static_cast<float>(f[i]) * Row(column(w.node, std::size_t(i)), size);
       }
@@ -240,7 +243,8 @@ class ResponseField {
       return Eigen::Map<Eigen::ArrayXf>(&columns_[(loads * k + l) * 3 * stride_], size);
     };
     for (auto part : places.parts(k)) {
-      for (std::size_t l = 0; l < 4; ++l) sum(l) += share * Row(column(part, l), size);
+      for (std::size_t l = 0; l < loads; ++l)
+        if (l != 4 && l != 5) sum(l) += share * Row(column(part, l), size);
       const Vec3<double> pn = touch_.nodes()[part].normal, p1 = perpendicular(pn), p2 = pn.cross(p1);
       sum(4) += share * (static_cast<float>(t1.dot(p1)) * Row(column(part, 4), size) +
                          static_cast<float>(t1.dot(p2)) * Row(column(part, 5), size));

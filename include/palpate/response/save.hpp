@@ -18,6 +18,7 @@
 
 #include <palpate/response/response_field.hpp>
 
+#include <bit>
 #include <cstring>
 #include <span>
 #include <string_view>
@@ -25,7 +26,7 @@
 
 namespace palpate {
 
-inline constexpr std::uint32_t saved_field_version = 6;
+inline constexpr std::uint32_t saved_field_version = 7;
 
 namespace detail {
 
@@ -268,14 +269,16 @@ class ByteReader {
             "a node is not a triangle's");
     parts.nodes.push_back(node);
   }
-  for (float c : parts.columns) require(is_finite(c), "a column is not finite");
+  std::uint32_t beyond = 0;  // top bit: some exponent is all ones; without a branch for each of millions
+  for (float c : parts.columns) beyond |= (std::bit_cast<std::uint32_t>(c) & 0x7fffffffu) + 0x00800000u;
+  require((beyond & 0x80000000u) == 0, "a column is not finite");
   for (const auto& row : parts.own)
     for (const auto& pair : row.pair)
       for (float e : pair) require(is_finite(e), "a table is not finite");
   for (const auto& row : parts.second)
     for (float e : row.mean) require(is_finite(e), "a table is not finite");
   for (const auto& row : parts.moments) {
-    bool good = is_finite(row.sag);
+    bool good = is_finite(row.sag) && is_finite(row.droop);
     for (const auto& mean : row.mean)
       for (float e : mean) good = good && is_finite(e);
     for (float e : row.own) good = good && is_finite(e);
