@@ -120,7 +120,8 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
 
   const MovedByLoads moved(field, c);
   // What is held takes less than all of a compliance: held to half where a patch is wide for a thin part.
-  double stiff = (1 - c.moments.share) * tilt_stiffness(c, nu);
+  const double tilt_stiff = tilt_stiffness(c, nu);
+  double stiff = (1 - c.moments.share) * tilt_stiff;
   const double taken = stiff * (2 * moved.radial.squaredNorm() + moved.tilting.squaredNorm()),
                whole = c.C.trace();
   stiff *= fading(taken * taken, 0.25 * whole * whole);
@@ -139,7 +140,7 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
   if (second_order == nullptr) return;
   const SecondOrder& k = *second_order;
   const double depth = std::clamp(c.d.dot(c.m), -2 * c.a, 2 * c.a), indented = near.normal * pushed,
-               tilt_stiff = tilt_stiffness(c, nu), delta = near.normal * twice * normal;
+               delta = near.normal * twice * normal;
   const Vec3<double> lean = c.lean();
   const double dipole =
       -outward(nu) * twice * normal * depth - k.foreshortened * tilt_stiff * lean.squaredNorm();

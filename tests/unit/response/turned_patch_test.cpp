@@ -46,7 +46,8 @@ TEST_CASE("a small patch: the half-space's moments of tilt and of twist") {
     // Stuck below: by nu, 1 % more than a frictionless disc at 0.3. The body's own part goes with (a / size)^3.
     CHECK(std::abs(tilt.z() / unit - 8 / (3 * (1 - nu))) < 0.012 * 8 / (3 * (1 - nu)));
     CHECK(std::abs(twist.y() / unit - 16. / 3) < 0.005 * 16. / 3);
-    CHECK(tilt.head<2>().norm() < 1e-3 * tilt.z());  // 150 vertices are not symmetric
+    // Nothing by symmetry, which 150 vertices have not.
+    CHECK(tilt.head<2>().norm() < 1e-3 * tilt.z());
     CHECK(V(twist.x(), 0, twist.z()).norm() < 1e-3 * twist.y());
   }
 }
@@ -91,6 +92,7 @@ TEST_CASE("pressed and tilted next to an edge: finite elements") {
   CHECK(std::sqrt(error / norm) <
         0.06);  // our goal at the deepest; of the free surface alone, on a small mesh
   CHECK((F - force).norm() < 0.03 * force.norm());
+  // The goal for forces; 1 % met, where the reference is too stiff by more. The rest vanishes by symmetry, which the mesh has not.
   CHECK(std::abs(T.z() - test::truth_turned_torque) < 0.03 * std::abs(test::truth_turned_torque));
   CHECK(T.head<2>().norm() < 0.01 * std::abs(T.z()));
 }
@@ -106,7 +108,7 @@ TEST_CASE("twisted on a bent surface: finite elements") {
   const Contact contact{.place = place, .normal = normal, .radius = 0.006, .rotation = -0.05 * normal};
   const V torque = solved(field, contact, true).torque, truth(-0.00839990622, -0.0143690087, 0);
   MESSAGE("torque ", torque.norm(), " of ", truth.norm());
-  CHECK((torque - truth).norm() < 0.03 * truth.norm());
+  CHECK((torque - truth).norm() < 0.03 * truth.norm());  // the goal for forces; 1.2 % met
 }
 
 TEST_CASE("what tilts and twists do, and what forces do to them, is the same: reciprocity") {
