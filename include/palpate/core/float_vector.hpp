@@ -35,6 +35,19 @@ using BitsRegister [[gnu::vector_size(32)]] = std::uint32_t;
 using FloatRegister = Float4;
 using BitsRegister = Bits4;
 #endif
+/// As many as the widest register holds, up to sixteen: for short loops over long rows.
+#if defined(__AVX512F__)
+using WideRegister [[gnu::vector_size(64)]] = float;
+using WideBits [[gnu::vector_size(64)]] = std::uint32_t;
+#else
+using WideRegister = FloatRegister;
+using WideBits = BitsRegister;
+#endif
+/// The bits of a register V.
+template <class V>
+using BitsOf =
+    std::conditional_t<sizeof(V) == sizeof(Float4), Bits4,
+                       std::conditional_t<sizeof(V) == sizeof(BitsRegister), BitsRegister, WideBits>>;
 
 /// How many a register V holds, and n of them rounded up to whole registers.
 template <class V>
@@ -156,8 +169,7 @@ template <class V>
 template <class V>
   requires(!std::floating_point<V>)
 [[nodiscard]] PALPATE_INLINE V magnitude(const V& a) noexcept {
-  using Bits = std::conditional_t<sizeof(V) == sizeof(Float4), Bits4, BitsRegister>;
-  return std::bit_cast<V>(std::bit_cast<Bits>(a) & 0x7fffffffu);
+  return std::bit_cast<V>(std::bit_cast<BitsOf<V>>(a) & 0x7fffffffu);
 }
 /// Entries from, from + 1, .. of a register.
 template <class V>
@@ -168,6 +180,33 @@ template <class V>
   const Float4 two = smaller(a, __builtin_shufflevector(a, a, 2, 3, 0, 1));
   return two[0] < two[1] ? two[0] : two[1];
 }
+
+/// The same for wider registers.
+template <class V>
+  requires(entries<V> > entries<Float4>)
+PALPATE_INLINE void store_interleaved(unsigned char* to, const V& x, const V& y, const V& z) noexcept {
+  for (std::size_t from = 0; from < entries<V>; from += entries<Float4>)
+    store_interleaved(to + 3 * sizeof(float) * from, four_of(x, from), four_of(y, from), four_of(z, from));
+}
+#if defined(__AVX512F__)
+/// Six permutations of whole registers instead of 24 of quarters.
+PALPATE_INLINE void store_interleaved(unsigned char* to, const WideRegister& x, const WideRegister& y,
+                                      const WideRegister& z) noexcept {
+  // x and y first, z between them.
+  const WideRegister xy_first =
+                         __builtin_shufflevector(x, y, 0, 16, 0, 1, 17, 0, 2, 18, 0, 3, 19, 0, 4, 20, 0, 5),
+                     xy_second =
+                         __builtin_shufflevector(x, y, 21, 0, 6, 22, 0, 7, 23, 0, 8, 24, 0, 9, 25, 0, 10, 26),
+                     xy_third = __builtin_shufflevector(x, y, 0, 11, 27, 0, 12, 28, 0, 13, 29, 0, 14, 30, 0,
+                                                        15, 31, 0);
+  store_vector(to, WideRegister(__builtin_shufflevector(xy_first, z, 0, 1, 16, 3, 4, 17, 6, 7, 18, 9, 10, 19,
+                                                        12, 13, 20, 15)));
+  store_vector(to + sizeof x, WideRegister(__builtin_shufflevector(xy_second, z, 0, 21, 2, 3, 22, 5, 6, 23, 8,
+                                                                   9, 24, 11, 12, 25, 14, 15)));
+  store_vector(to + 2 * sizeof x, WideRegister(__builtin_shufflevector(xy_third, z, 26, 1, 2, 27, 4, 5, 28, 7,
+                                                                       8, 29, 10, 11, 30, 13, 14, 31)));
+}
+#endif
 
 /// Lowers `least`, entry by entry, to those of x, four by four.
 template <class V>

@@ -10,15 +10,14 @@
 
 namespace palpate::detail {
 
-/// 1 / sqrt(x) for x >= 0 to 4 ulp, finite at 0. `V`: float, double, Float4 or FloatRegister. std::sqrt may have to set errno, and
+/// 1 / sqrt(x) for x >= 0 to 4 ulp, finite at 0. `V`: float, double or a register. std::sqrt may have to set errno, and
 /// then loops do not vectorise. Source: [lomont2003]; after it 2e-3, Newton steps and one of third order until rounding.
 template <class V>
 [[nodiscard]] PALPATE_INLINE V inverse_root(const V& x) noexcept {
   constexpr bool is_double = std::is_same_v<V, double>;
   using S = std::conditional_t<is_double, double, float>;
   using Word = std::conditional_t<is_double, std::uint64_t, std::uint32_t>;
-  using Words = std::conditional_t<sizeof(V) == sizeof(Float4), Bits4, BitsRegister>;
-  using Bits = std::conditional_t<std::is_floating_point_v<V>, Word, Words>;
+  using Bits = std::conditional_t<std::is_floating_point_v<V>, Word, BitsOf<V>>;
   constexpr Word start = is_double ? Word(0x5fe6ec85e7de30da) : Word(0x5f375a86);
   V y = std::bit_cast<V>(Bits(start - (std::bit_cast<Bits>(x) >> 1)));
   const V half = S(0.5) * x;

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 namespace palpate::detail {
 
@@ -48,22 +49,36 @@ class VertexWriter {
     put(vertex(2), T(x[2]), T(y[2]), T(z[2]));
     put(vertex(3), T(x[3]), T(y[3]), T(z[3]));
   }
-  /// x[i], y[i], z[i] to vertex number vertex(i), for all i < count.
+  /// To vertices number vertex(0), vertex(1) .., as many as a register holds; more than four ascend.
+  template <class Vertex, class V>
+  PALPATE_INLINE void put_register(const Vertex& vertex, const V& x, const V& y, const V& z) const noexcept {
+    if constexpr (entries<V> == entries<Float4>) {
+      put_four(vertex, x, y, z);
+    } else {
+      const std::uint32_t first = vertex(0);
+      if (is_packed() &&
+          vertex(entries<V> - 1) - first == entries<V> - 1)  // as they ascend: none is left out
+        return store_interleaved(base_ + stride_ * first, x, y, z);
+      for (std::uint32_t from = 0; from < entries<V>; from += entries<Float4>)
+        put_four([&vertex, from](std::uint32_t k) { return vertex(from + k); }, four_of(x, from),
+                 four_of(y, from), four_of(z, from));
+    }
+  }
+  /// x[i], y[i], z[i] to vertex number vertex(i), for all i < count; they ascend.
   template <Real S, class Vertex>
   PALPATE_INLINE void put_all(std::size_t count, const Vertex& vertex, const S* x, const S* y,
                               const S* z) const noexcept {
-    for (std::size_t i = 0; i < count;) {
-      if constexpr (sizeof(S) == sizeof(float)) {
-        if (i + 4 <= count && in_a_row([&vertex, i](std::size_t k) { return vertex(i + k); })) {
-          store_interleaved(base_ + stride_ * vertex(i), load_vector<Float4>(x + i),
-                            load_vector<Float4>(y + i), load_vector<Float4>(z + i));
-          i += 4;
-          continue;
-        }
-      }
-      put(vertex(i), static_cast<T>(x[i]), static_cast<T>(y[i]), static_cast<T>(z[i]));
-      ++i;
+    std::size_t i = 0;
+    if constexpr (sizeof(S) == sizeof(float)) {
+      const auto put_while_whole = [&]<class V>(std::type_identity<V>) {
+        for (; i + entries<V> <= count; i += entries<V>)
+          put_register([&vertex, i](std::uint32_t k) { return vertex(i + k); }, load_vector<V>(x + i),
+                       load_vector<V>(y + i), load_vector<V>(z + i));
+      };
+      put_while_whole(std::type_identity<WideRegister>{});
+      put_while_whole(std::type_identity<Float4>{});
     }
+    for (; i < count; ++i) put(vertex(i), static_cast<T>(x[i]), static_cast<T>(y[i]), static_cast<T>(z[i]));
   }
 
  private:

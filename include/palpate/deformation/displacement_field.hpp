@@ -4,9 +4,9 @@
 /// @file  Output stage: displacements of corners and contacts to vertices and normals in the caller's buffer.
 
 #include <palpate/core/error.hpp>
+#include <palpate/core/vertex_writer.hpp>
 #include <palpate/deformation/concept.hpp>
 #include <palpate/deformation/vertex_normals.hpp>
-#include <palpate/core/vertex_writer.hpp>
 #include <palpate/interpolation/concept.hpp>
 #include <palpate/interpolation/neighbourhood.hpp>
 
@@ -63,14 +63,17 @@ class DisplacementField {
   template <Real T>
   void write_rest(const VertexBuffer<T>& out) noexcept {
     forget();
-    const auto order = partition().order();
-    detail::VertexWriter<T>(out.positions, out.position_stride)
-        .put_all(
-            order.size(), [order](std::size_t i) { return order[i]; }, partition().rest(0),
-            partition().rest(1), partition().rest(2));
+    const FacePartition<S>& part = partition();
+    for (const Face<S>& face : part.faces())
+      put(face.first, face.count, part.rest(0) + face.first, part.rest(1) + face.first,
+          part.rest(2) + face.first, out);
     if (!p_.normals || out.normals == nullptr) return;
     std::fill(dirty_.begin(), dirty_.end(), std::uint8_t{1});
-    write_normals(out);
+    for (std::size_t f = 0; f < dirty_.size(); ++f) {
+      place_at_rest(f);
+      write_normals_in_row(f, out);
+    }
+    write_normals_apart(out);
   }
 
   /// Writes the shape under `contacts`. `corners` holds the displacements u_i [m] that each contact causes at the
@@ -85,6 +88,7 @@ class DisplacementField {
     if (count < contacts.size()) moved.status |= Status::region_overflow;
     if (!take(contacts.first(count), corners.first(count * points))) return moved;
 
+    const bool with_normals = p_.normals && out.normals != nullptr;
     Extent extent;
     for (std::size_t f = 0; f < dirty_.size(); ++f) {
       dirty_[f] = changed(f) ? 1 : 0;
@@ -92,6 +96,7 @@ class DisplacementField {
       const Face<S>& face = partition().faces()[f];
       for (std::size_t first = face.first; first < face.first + face.count; first += block_size)
         write_block(f, first, (std::min)(block_size, face.first + face.count - first), extent, out);
+      if (with_normals) write_normals_in_row(f, out);
       moved.vertices += face.count;
     }
     if (moved.vertices > 0) {
@@ -99,7 +104,7 @@ class DisplacementField {
         moved.lower[static_cast<int>(axis)] = extent.lower[axis].minCoeff();
         moved.upper[static_cast<int>(axis)] = extent.upper[axis].maxCoeff();
       }
-      if (p_.normals && out.normals != nullptr) write_normals(out);
+      if (with_normals) write_normals_apart(out);
     }
     loads_.swap(previous_);
     dents_.swap(previous_dents_);
@@ -181,7 +186,7 @@ class DisplacementField {
         for (const std::uint32_t other : rings[slot])
           if (face_of[other] != face_of[slot]) around.push_back({face_of[other], other});
       }
-      inside_.push_back(normals_.add(rings, inside));
+      inside_.push_back(normals_.add(rings, inside, {face.first, face.count}));
       std::sort(around.begin(), around.end());
       around.erase(std::unique(around.begin(), around.end()), around.end());
       rim_start_.push_back(rim_.size());
@@ -193,7 +198,9 @@ class DisplacementField {
       }
     }
     rim_start_.push_back(rim_.size());
-    place_ = VertexPlaces(order.size());
+    std::size_t longest = 0;
+    for (const Face<S>& face : partition().faces()) longest = (std::max)(longest, face.count);
+    place_ = VertexPlaces(longest, normals_.packed_reads(order.size()));
   }
 
   void forget() noexcept {
@@ -205,9 +212,7 @@ class DisplacementField {
     contacts_.clear();
     corners_.clear();
     if (!p_.normals) return;
-    const S *const x = partition().rest(0), *const y = partition().rest(1), *const z = partition().rest(2);
-    for (std::size_t slot = 0; slot < partition().size(); ++slot)
-      place_.set(slot, static_cast<float>(x[slot]), static_cast<float>(y[slot]), static_cast<float>(z[slot]));
+    for (std::size_t f = 0; f < dirty_.size(); ++f) place_at_rest(f);
   }
 
   // Keeps the input; false when it is the same as in the last tick.
@@ -243,6 +248,15 @@ class DisplacementField {
     return false;
   }
 
+  // Slots of one face: their vertices ascend.
+  template <Real T>
+  PALPATE_INLINE void put(std::size_t first, std::size_t count, const S* x, const S* y, const S* z,
+                          const VertexBuffer<T>& out) const noexcept {
+    detail::VertexWriter<T>(out.positions, out.position_stride)
+        .put_all(
+            count, [at = partition().order().data() + first](std::size_t i) { return at[i]; }, x, y, z);
+  }
+
   template <Real T>
   PALPATE_FLATTEN void write_block(std::size_t f, std::size_t first, std::size_t count, Extent& extent,
                                    const VertexBuffer<T>& out) noexcept {
@@ -266,42 +280,46 @@ class DisplacementField {
         x[axis][i] = x[axis][0];  // not vertices of this block: no part in the box
       extent.take(axis, x[axis]);
     }
-    const std::uint32_t* const vertex = part.order().data() + first;
-    detail::VertexWriter<T>(out.positions, out.position_stride)
-        .put_all(
-            count, [vertex](std::size_t i) { return vertex[i]; }, x[0].value, x[1].value, x[2].value);
-    if (!p_.normals) return;
-    std::size_t i = 0;
-    for (; i + 4 <= count; i += 4) {
-      const auto at = [&x, i](std::size_t axis) -> Eigen::Array4f {
-        return Eigen::Map<const Eigen::Array<S, 4, 1>>(x[axis].value + i).template cast<float>();
-      };
-      const Eigen::Array4f px = at(0), py = at(1), pz = at(2);
-      place_.set_row(first + i, px.data(), py.data(), pz.data());
-    }
-    for (; i < count; ++i)
-      place_.set(first + i, static_cast<float>(x[0][i]), static_cast<float>(x[1][i]),
-                 static_cast<float>(x[2][i]));
+    put(first, count, x[0].value, x[1].value, x[2].value, out);
+    if (p_.normals)
+      place_.set_row(first - part.faces()[f].first, first, count, x[0].value, x[1].value, x[2].value);
+  }
+  void place_at_rest(std::size_t f) noexcept {
+    const FacePartition<S>& part = partition();
+    const Face<S>& face = part.faces()[f];
+    place_.set_row(0, face.first, face.count, part.rest(0) + face.first, part.rest(1) + face.first,
+                   part.rest(2) + face.first);
   }
 
-  template <Real T>
-  PALPATE_FLATTEN void write_normals(const VertexBuffer<T>& out) const noexcept {
-    const auto rest = [this](std::size_t slot) {
+  // The undeformed normal in a slot.
+  [[nodiscard]] auto rest_normal() const noexcept {
+    return [this](std::size_t slot) {
       const auto normal = [this, slot](int axis) {
         return static_cast<float>(partition().normal(axis)[slot]);
       };
       return Packed3{normal(0), normal(1), normal(2)};
     };
-    const auto store = [to = detail::VertexWriter<T>(out.normals, out.normal_stride),
-                        order = partition().order().data()](const auto& slot, const auto& x, const auto& y,
-                                                            const auto& z) {
-      to.put_four([&](std::size_t k) { return order[slot(k)]; }, x, y, z);
+  }
+  template <Real T>
+  [[nodiscard]] auto normal_writer(const VertexBuffer<T>& out) const noexcept {
+    return [to = detail::VertexWriter<T>(out.normals, out.normal_stride), order = partition().order().data()](
+               const auto& slot, const auto& x, const auto& y, const auto& z) {
+      to.put_register([&](std::uint32_t k) { return order[slot(k)]; }, x, y, z);
     };
+  }
+  // Of face f's vertices that need no other face's, right after their places have been written.
+  template <Real T>
+  PALPATE_FLATTEN void write_normals_in_row(std::size_t f, const VertexBuffer<T>& out) const noexcept {
+    normals_.each_in_row(inside_[f], place_, rest_normal(), normal_writer(out));
+  }
+  template <Real T>
+  PALPATE_FLATTEN void write_normals_apart(const VertexBuffer<T>& out) const noexcept {
     for (std::size_t f = 0; f < dirty_.size(); ++f) {
       if (!dirty_[f]) continue;
-      normals_.each_unit(inside_[f], place_, rest, store);
+      normals_.each_apart(inside_[f], place_, rest_normal(), normal_writer(out));
       for (std::size_t k = rim_start_[f]; k < rim_start_[f + 1]; ++k)
-        if (!dirty_[rim_[k].face]) normals_.each_unit(rim_[k].vertices, place_, rest, store);
+        if (!dirty_[rim_[k].face])
+          normals_.each_apart(rim_[k].vertices, place_, rest_normal(), normal_writer(out));
     }
   }
 
@@ -324,7 +342,7 @@ class DisplacementField {
   std::vector<ContactDisplacement<S>> contacts_;
   std::vector<Vec3<S>> corners_;
   std::vector<std::uint8_t> dirty_;
-  VertexPlaces place_;  // with normals: of every slot, now
+  VertexPlaces place_;  // with normals: of one face's slots after the other's, and packed
   std::size_t active_ = 0, previous_count_ = 0;
 };
 

@@ -270,9 +270,7 @@ class HalfSpaceDeformation {
       else
         for (std::size_t v = 0; v < n; ++v) out[v] = x[v] + moves[v] * u[v];
     }
-    if (!p_.normals) return;
-    for (std::size_t v = 0; v < n; v += 4)
-      normals_.places().set_row(v, &now_[0][v], &now_[1][v], &now_[2][v]);
+    if (p_.normals) normals_.places().set_row(0, 0, n, now_[0].data(), now_[1].data(), now_[2].data());
   }
 
   [[nodiscard]] static PALPATE_INLINE Lane lane_at(const float* from) noexcept {

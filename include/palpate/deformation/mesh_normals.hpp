@@ -15,14 +15,17 @@ class MeshNormals {
  public:
   MeshNormals() = default;
   MeshNormals(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertices)
-      : normals_(VertexRings(triangles, vertices)), places_(vertices), rest_(vertices) {}
+      : normals_(VertexRings(triangles, vertices)),
+        places_(vertices, normals_.packed_reads(vertices)),
+        rest_(vertices) {}
 
   /// To be filled by the caller.
   [[nodiscard]] VertexPlaces& places() noexcept { return places_; }
   /// The places are those at rest. Set-up only.
   void keep_rest() noexcept {
     each([this](const auto& vertex, const auto& x, const auto& y, const auto& z) {
-      for (std::size_t k = 0; k < 4; ++k) rest_[vertex(k)] = {x[k], y[k], z[k]};
+      for (std::uint32_t k = 0; k < detail::entries<std::remove_cvref_t<decltype(x)>>; ++k)
+        rest_[vertex(k)] = {x[k], y[k], z[k]};
     });
   }
 
@@ -30,7 +33,7 @@ class MeshNormals {
   template <Real T>
   void write(const VertexBuffer<T>& out) const noexcept {
     each([to = writer(out)](const auto& vertex, const auto& x, const auto& y, const auto& z) {
-      to.put_four(vertex, x, y, z);
+      to.put_register(vertex, x, y, z);
     });
   }
   template <Real T>

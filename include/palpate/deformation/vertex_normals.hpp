@@ -10,10 +10,12 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <numeric>
 #include <span>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace palpate {
@@ -23,31 +25,40 @@ struct alignas(16) Packed3 {
   float x = 0, y = 0, z = 0, unused = 0;
 };
 
-/// Places of all vertices as `VertexNormals` reads them: one by one, and coordinate by coordinate [m].
+/// Places as `VertexNormals` reads them: coordinate by coordinate, those of all vertices or of one run of them after the other, and
+/// packed, one by one [m].
 class VertexPlaces {
  public:
   VertexPlaces() = default;
-  explicit VertexPlaces(std::size_t vertices) : packed_((vertices + 3) / 4 * 4) {
-    for (auto& list : axis_) list.resize(packed_.size() + 7);
+  /// `run`: the longest; `packed_reads`: for each vertex, 1 if its packed place is read (VertexNormals::packed_reads()).
+  VertexPlaces(std::size_t run, std::vector<std::uint8_t> packed_reads) : packs_(std::move(packed_reads)) {
+    packs_.resize((packs_.size() + 3) / 4 * 4);
+    packed_.resize(packs_.size());
+    for (auto& list : axis_) list.resize((run + 3) / 4 * 4);
   }
 
   [[nodiscard]] const Packed3* packed() const noexcept { return packed_.data(); }
-  /// What lies past the last vertex may be read.
   [[nodiscard]] const float* axis(std::size_t i) const noexcept { return axis_[i].data(); }
 
-  void set(std::size_t v, float x, float y, float z) noexcept {
-    packed_[v] = {x, y, z};
-    axis_[0][v] = x, axis_[1][v] = y, axis_[2][v] = z;
-  }
-  /// Four in a row, from v on, perhaps past the last vertex if v is a multiple of 4.
-  PALPATE_INLINE void set_row(std::size_t v, const float* x, const float* y, const float* z) noexcept {
-    const detail::Float4 a = detail::load_vector<detail::Float4>(x),
-                         b = detail::load_vector<detail::Float4>(y),
-                         c = detail::load_vector<detail::Float4>(z);
-    detail::store_vector(&axis_[0][v], a);
-    detail::store_vector(&axis_[1][v], b);
-    detail::store_vector(&axis_[2][v], c);
-    pack(a, b, c, [v](std::size_t k) { return v + k; });
+  /// `count` vertices from v on; in the present run they begin at `at`.
+  template <Real S>
+  PALPATE_INLINE void set_row(std::size_t at, std::size_t v, std::size_t count, const S* x, const S* y,
+                              const S* z) noexcept {
+    set_axis(&axis_[0][at], x, count);
+    set_axis(&axis_[1][at], y, count);
+    set_axis(&axis_[2][at], z, count);
+    const auto four = [at](const std::vector<float>& axis, std::size_t i) {
+      return detail::load_vector<detail::Float4>(&axis[at + i]);
+    };
+    std::size_t i = 0;
+    for (; i + 4 <= count; i += 4) {
+      std::uint32_t any;
+      std::memcpy(&any, &packs_[v + i], sizeof any);
+      if (any != 0)
+        pack(four(axis_[0], i), four(axis_[1], i), four(axis_[2], i),
+             [v, i](std::size_t k) { return v + i + k; });
+    }
+    for (; i < count; ++i) packed_[v + i] = {axis_[0][at + i], axis_[1][at + i], axis_[2][at + i]};
   }
   /// Four anywhere, packed; `complete` when all are there.
   PALPATE_INLINE void set_four(const std::uint32_t* v, detail::Float4 x, detail::Float4 y,
@@ -74,6 +85,17 @@ class VertexPlaces {
   }
 
  private:
+  template <Real S>
+  static PALPATE_INLINE void set_axis(float* PALPATE_RESTRICT to, const S* PALPATE_RESTRICT from,
+                                      std::size_t count) noexcept {
+    std::size_t i = 0;
+    if constexpr (sizeof(S) == sizeof(float)) {
+      using V = detail::WideRegister;
+      for (; i + detail::entries<V> <= count; i += detail::entries<V>)
+        detail::store_vector(to + i, detail::load_vector<V>(from + i));
+    }
+    for (; i < count; ++i) to[i] = static_cast<float>(from[i]);
+  }
   template <class At>
   PALPATE_INLINE void pack(detail::Float4 a, detail::Float4 b, detail::Float4 c, const At& at) noexcept {
     detail::Float4 d{};
@@ -87,6 +109,7 @@ class VertexPlaces {
 
   std::vector<Packed3> packed_;
   std::array<std::vector<float>, 3> axis_;
+  std::vector<std::uint8_t> packs_;  // 1 where the packed place is read
 };
 
 /// The ring of neighbours p_0 .. p_{m-1} of every vertex of a closed mesh, counter-clockwise from outside, lowest first; an
@@ -157,10 +180,14 @@ class VertexRings {
 /// In float, whatever the scalar: a place 0.1 m from the origin is known to 4 nm, and a normal between edges of 1 mm to
 /// 1e-5 rad; no display shows more.
 ///
-/// Eight vertices in a row whose rings are the same but for a shift by one are done coordinate by coordinate, as most are in a
-/// mesh laid out in rows; the others by fours with rings of one size, wherever they are.
+/// Sixteen or eight vertices in a row whose rings are the same but for a shift by one, and in one run of places, are done
+/// coordinate by coordinate, as most are in a mesh laid out in rows; the others by fours with rings of one size, wherever they are.
 class VertexNormals {
  public:
+  /// Vertices that follow each other, and whose coordinates do in VertexPlaces.
+  struct Run {
+    std::size_t first, count;
+  };
   /// Vertices that are done together.
   struct Group {
     std::uint32_t row_begin = 0, row_end = 0, four_begin = 0, four_end = 0;
@@ -171,24 +198,30 @@ class VertexNormals {
   explicit VertexNormals(const VertexRings& rings) {
     std::vector<std::uint32_t> vertices(rings.size());
     std::iota(vertices.begin(), vertices.end(), 0u);
-    add(rings, vertices);
+    add(rings, vertices, {0, rings.size()});
   }
-  /// Makes a group of vertices, in ascending order, ready. Set-up only.
-  Group add(const VertexRings& rings, const std::vector<std::uint32_t>& vertices) {
+  /// Makes a group of vertices, in ascending order, ready. Set-up only. `run`: the one that is in VertexPlaces when the group's turn
+  /// comes; without it only packed places are read.
+  Group add(const VertexRings& rings, const std::vector<std::uint32_t>& vertices, const Run& run = {}) {
     const Group before = all();
     std::vector<std::uint32_t> others;
-    const auto is_row_at = [&](std::size_t i) {
-      return i + in_row <= vertices.size() && is_row(rings, &vertices[i]);
+    // How far a row of `count` that takes in vertex i begins before it, among those already done: of it at least two are new.
+    const auto back_from = [&](std::size_t i, std::size_t count) {
+      const std::size_t most = (std::min)(i, count - 2);
+      std::size_t back = 0;
+      while (back <= most &&
+             !(i - back + count <= vertices.size() && is_row(rings, &vertices[i - back], count, run)))
+        ++back;
+      return back <= most ? back : count;
     };
     for (std::size_t i = 0; i < vertices.size();) {
-      // The end of a run, at least two of them, is in a row that begins among those already done.
-      const std::size_t most = (std::min)(i, std::size_t{in_row - 2});
-      std::size_t back = 0;
-      while (back <= most && !is_row_at(i - back)) ++back;
-      if (back <= most) {
+      std::size_t count = most_in_row, back = back_from(i, count);
+      if (count - back <= least_in_row) count = least_in_row, back = back_from(i, count);
+      if (back < count) {
         const std::uint32_t v = vertices[i - back];
-        rows_.push_back({v, list(rings[v], 1), size_of(rings[v])});
-        i += in_row - back;
+        rows_.push_back(
+            {v, static_cast<std::uint32_t>(count), list(rings[v], 1, run.first), size_of(rings[v])});
+        i += count - back;
       } else {
         others.push_back(vertices[i++]);
       }
@@ -199,7 +232,7 @@ class VertexNormals {
       Four four{{}, static_cast<std::uint32_t>(rings_.size()), size_of(rings[others[i]])};
       for (std::uint32_t& v : four.vertex) {
         v = others[i];  // the last of its size as often as it takes
-        list(rings[v], floats);
+        list(rings[v], floats, 0);
         if (&v != &four.vertex[3] && i + 1 < others.size() && rings[others[i + 1]].size() == four.size) ++i;
       }
       fours_.push_back(four);
@@ -214,54 +247,64 @@ class VertexNormals {
     return {0, static_cast<std::uint32_t>(rows_.size()), 0, static_cast<std::uint32_t>(fours_.size())};
   }
 
-  /// emit(vertex, x, y, z) with the unit normals of four vertices, number vertex(0) .. vertex(3), until all of the group have
-  /// theirs, some more than once. One whose ring has collapsed has the normal rest(vertex).
+  /// For each of the mesh's vertices, 1 if a group reads its packed place.
+  [[nodiscard]] std::vector<std::uint8_t> packed_reads(std::size_t vertices) const {
+    std::vector<std::uint8_t> reads(vertices);
+    for (const Four& four : fours_) {
+      for (std::uint32_t i = four.ring; i < four.ring + 4 * four.size; ++i) reads[rings_[i] / floats] = 1;
+    }
+    return reads;
+  }
+
+  /// emit(vertex, x, y, z) with the unit normals of a register's worth of vertices, number vertex(0), vertex(1) .., ascending
+  /// where they are more than four, until all of the group have theirs, some more than once. One whose ring has collapsed
+  /// has the normal rest(vertex).
   template <class Rest, class Emit>
-  PALPATE_FLATTEN void each_unit(const Group& group, const VertexPlaces& places, const Rest& rest,
-                                 const Emit& emit) const noexcept {
-    constexpr float much = (std::numeric_limits<float>::max)();
-    detail::Float4 least{much, much, much, much};  // square of an area
-    const Emit put = emit;  // in registers: what it writes might be any of it otherwise
-    each_area(group, places, [&](const auto& vertex, auto& x, auto& y, auto& z) {
-      detail::take_least(least, normalise(x, y, z));
-      by_fours(vertex, x, y, z, put);
-    });
-    if ((std::min)({least[0], least[1], least[2], least[3]}) > collapsed) return;
-    each_area(group, places, [&](const auto& vertex, auto& x, auto& y, auto& z) {
-      const auto square = normalise(x, y, z);
-      bool any = false;
-      for (std::uint32_t k = 0; k < detail::entries<std::remove_cvref_t<decltype(x)>>; ++k) {
-        if (square[k] > collapsed) continue;
-        const Packed3 normal = rest(vertex(k));
-        x[k] = normal.x, y[k] = normal.y, z[k] = normal.z;
-        any = true;
-      }
-      if (any) by_fours(vertex, x, y, z, emit);
-    });
+  void each_unit(const Group& group, const VertexPlaces& places, const Rest& rest,
+                 const Emit& emit) const noexcept {
+    each<true>(group, places, rest, emit);
+    each<false>(group, places, rest, emit);
+  }
+  /// The same for those of a group that are read coordinate by coordinate: its run must be there, and nothing else.
+  template <class Rest, class Emit>
+  void each_in_row(const Group& group, const VertexPlaces& places, const Rest& rest,
+                   const Emit& emit) const noexcept {
+    each<true>(group, places, rest, emit);
+  }
+  /// And for the others: all packed places must be there.
+  template <class Rest, class Emit>
+  void each_apart(const Group& group, const VertexPlaces& places, const Rest& rest,
+                  const Emit& emit) const noexcept {
+    each<false>(group, places, rest, emit);
   }
 
  private:
   struct Row {
-    std::uint32_t vertex, ring, size;  // of the first one: its number, and where its neighbours' are listed
+    std::uint32_t vertex, count;
+    std::uint32_t ring, size;  // of the first one: where its neighbours' places in the run are listed
   };
   struct Four {
     std::array<std::uint32_t, 4> vertex;
     std::uint32_t ring, size;  // where the first one's neighbours' places are listed; the others follow
   };
   static constexpr float collapsed = (std::numeric_limits<float>::min)();  // square of an area
-  static constexpr std::uint32_t in_row = 8, floats = sizeof(Packed3) / sizeof(float);
+  static constexpr std::uint32_t most_in_row = 16, least_in_row = 8, floats = sizeof(Packed3) / sizeof(float);
 
   [[nodiscard]] static std::uint32_t size_of(std::span<const std::uint32_t> ring) {
     return static_cast<std::uint32_t>(ring.size());
   }
-  std::uint32_t list(std::span<const std::uint32_t> ring, std::uint32_t unit) {
+  std::uint32_t list(std::span<const std::uint32_t> ring, std::uint32_t unit, std::size_t from) {
     const auto begin = static_cast<std::uint32_t>(rings_.size());
-    for (const std::uint32_t neighbour : ring) rings_.push_back(unit * neighbour);
+    for (const std::uint32_t neighbour : ring)
+      rings_.push_back(unit * (neighbour - static_cast<std::uint32_t>(from)));
     return begin;
   }
-  [[nodiscard]] static bool is_row(const VertexRings& rings, const std::uint32_t* vertex) {
+  [[nodiscard]] static bool is_row(const VertexRings& rings, const std::uint32_t* vertex, std::size_t count,
+                                   const Run& run) {
     const auto first = rings[vertex[0]];
-    for (std::uint32_t k = 1; k < in_row; ++k) {
+    for (const std::uint32_t neighbour : first)
+      if (neighbour < run.first || neighbour + count > run.first + run.count) return false;
+    for (std::uint32_t k = 1; k < count; ++k) {
       const auto next = rings[vertex[k]];
       if (vertex[k] != vertex[0] + k || next.size() != first.size()) return false;
       for (std::size_t j = 0; j < first.size(); ++j)
@@ -313,38 +356,74 @@ class VertexNormals {
     x *= scale, y *= scale, z *= scale;
     return square;
   }
-  template <class Vertex, class V, class Emit>
-  static PALPATE_INLINE void by_fours(const Vertex& vertex, const V& x, const V& y, const V& z,
-                                      const Emit& emit) noexcept {
-    using detail::four_of;
-    for (std::uint32_t from = 0; from < detail::entries<V>; from += floats)
-      emit([&vertex, from](std::size_t k) { return vertex(from + static_cast<std::uint32_t>(k)); },
-           four_of(x, from), four_of(y, from), four_of(z, from));
+  template <bool InRow, class Rest, class Emit>
+  PALPATE_FLATTEN void each(const Group& group, const VertexPlaces& places, const Rest& rest,
+                            const Emit& emit) const noexcept {
+    constexpr float much = (std::numeric_limits<float>::max)();
+    detail::Float4 least{much, much, much, much};  // square of an area
+    const Emit put = emit;  // in registers: what it writes might be any of it otherwise
+    each_area<InRow>(group, places, [&](const auto& vertex, auto& x, auto& y, auto& z) {
+      detail::take_least(least, normalise(x, y, z));
+      put(vertex, x, y, z);
+    });
+    if ((std::min)({least[0], least[1], least[2], least[3]}) > collapsed) return;
+    each_area<InRow>(group, places, [&](const auto& vertex, auto& x, auto& y, auto& z) {
+      const auto square = normalise(x, y, z);
+      bool any = false;
+      for (std::uint32_t k = 0; k < detail::entries<std::remove_cvref_t<decltype(x)>>; ++k) {
+        if (square[k] > collapsed) continue;
+        const Packed3 normal = rest(vertex(k));
+        x[k] = normal.x, y[k] = normal.y, z[k] = normal.z;
+        any = true;
+      }
+      if (any) emit(vertex, x, y, z);
+    });
   }
 
+  template <class Sum>
+  static PALPATE_INLINE void with_size(std::uint32_t size, const Sum& sum) noexcept {
+    if (size == 6)  // as nearly all are
+      sum(std::integral_constant<std::uint32_t, 6>{});
+    else
+      sum(size);
+  }
   // work(vertex, x, y, z) with 2 A of the vertices vertex(0), vertex(1) ..
-  template <class Work>
+  template <bool InRow, class Work>
   PALPATE_INLINE void each_area(const Group& group, const VertexPlaces& places,
                                 const Work& work) const noexcept {
-    using detail::Float4, detail::FloatRegister;
-    const auto with_size = [](std::uint32_t size, const auto& sum) {
-      if (size == 6)  // as nearly all are
-        sum(std::integral_constant<std::uint32_t, 6>{});
-      else
-        sum(size);
-    };
-    const std::uint32_t* const rings = rings_.data();
-    const float *const px = places.axis(0), *const py = places.axis(1), *const pz = places.axis(2);
+    if constexpr (InRow)
+      areas_in_row(group, places, work);
+    else
+      areas_apart(group, places, work);
+  }
+  template <class Work>
+  PALPATE_INLINE void areas_in_row(const Group& group, const VertexPlaces& places,
+                                   const Work& work) const noexcept {
+    using detail::FloatRegister, detail::WideRegister;
     for (const Row *at = rows_.data() + group.row_begin, *const end = rows_.data() + group.row_end; at < end;
          ++at) {
       const Row row = *at;
-      for (std::uint32_t from = 0; from < in_row; from += detail::entries<FloatRegister>) {
-        FloatRegister x, y, z;
-        with_size(row.size,
-                  [&](auto size) { area(px + from, py + from, pz + from, rings + row.ring, size, x, y, z); });
-        work([first = row.vertex + from](std::uint32_t k) { return first + k; }, x, y, z);
-      }
+      if (row.count >= detail::entries<WideRegister>)
+        areas_of<WideRegister>(row, places, work);
+      else
+        areas_of<FloatRegister>(row, places, work);
     }
+  }
+  template <class V, class Work>
+  PALPATE_INLINE void areas_of(const Row& row, const VertexPlaces& places, const Work& work) const noexcept {
+    const std::uint32_t* const ring = rings_.data() + row.ring;
+    const float *const px = places.axis(0), *const py = places.axis(1), *const pz = places.axis(2);
+    for (std::uint32_t from = 0; from < row.count; from += detail::entries<V>) {
+      V x, y, z;
+      with_size(row.size, [&](auto size) { area(px + from, py + from, pz + from, ring, size, x, y, z); });
+      work([first = row.vertex + from](std::uint32_t k) { return first + k; }, x, y, z);
+    }
+  }
+  template <class Work>
+  PALPATE_INLINE void areas_apart(const Group& group, const VertexPlaces& places,
+                                  const Work& work) const noexcept {
+    using detail::Float4;
+    const std::uint32_t* const rings = rings_.data();
     const float* const p = &places.packed()->x;
     for (const Four *at = fours_.data() + group.four_begin, *const end = fours_.data() + group.four_end;
          at < end; ++at) {
@@ -363,7 +442,7 @@ class VertexNormals {
   std::vector<Row> rows_;
   std::vector<Four> fours_;
   std::vector<std::uint32_t>
-      rings_;  // vertices' numbers; of fours, where their packed places begin, in floats
+      rings_;  // of rows, where in the run; of fours, where their packed places begin, in floats
 };
 
 }  // namespace palpate
