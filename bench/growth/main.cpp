@@ -12,13 +12,22 @@
 ///     copy_us                           force tick, then memcpy of as many bytes as the positions have (timed)
 ///
 /// So detection and force find the caches as the shape left them; what exact_us grows by is program and solver, not samples.
+///
+///     beside_us                         the force tick at 10 kHz in a thread of its own, while another draws as fast as it can
+///                                       (shape with normals, contacts handed over by a TripleBuffer)
+///
 /// Medians of the thread's processor time, less what reading it costs: a large mesh takes longer than a time slice, and
 /// other programs' share would count. memory_MB: heap of mesh
 /// surface, shape model and its buffers. hash: of the forces, the positions and the normals.
 
 #include "shape_scene.hpp"
 
+#include <palpate/device/triple_buffer.hpp>
+
 #include <malloc.h>
+
+#include <atomic>
+#include <thread>
 
 namespace {
 
@@ -53,12 +62,40 @@ struct Median {
   }
 };
 
+template <class Object>
+Median force_beside_drawing(Touch<Object>& touch, Shape& shape, std::span<const Pose<double>> poses) {
+  struct Pressed {
+    std::array<ContactState<double>, Touch<Object>::max_regions> contact{};
+    std::size_t count = 0;
+  };
+  TripleBuffer<Pressed> hand_over;
+  std::atomic<bool> stop{false};
+  std::thread drawing([&] {
+    while (!stop.load(std::memory_order_relaxed)) {
+      if (hand_over.fetch()) shape.write({hand_over.front().contact.data(), hand_over.front().count});
+    }
+  });
+  Median force;
+  auto next = Clock::now();
+  for (std::size_t k = 0; k < 2000; ++k) {
+    wait_until(next += std::chrono::microseconds(100));
+    force.add([&] { use(touch.tick(poses[k % poses.size()])); });
+    const auto contacts = touch.contacts();
+    std::copy(contacts.begin(), contacts.end(), hand_over.back().contact.begin());
+    hand_over.back().count = contacts.size();
+    hand_over.publish();
+  }
+  stop = true;
+  drawing.join();
+  return force;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const Output out(argc, argv,
                    "vertices,triangles,tool_points,detect_us,force_us,shape_us,normals_us,memory_MB,copy_us,"
-                   "exact_us,hash");
+                   "exact_us,beside_us,hash");
   const auto poses = sliding<double>(0.04, 2e-3);
   Median empty;
   for (int k = 0; k < 10000; ++k) empty.add([] {});
@@ -114,10 +151,11 @@ int main(int argc, char** argv) {
       hash.add(shape.normals());
       hash.add(bare.positions());
       char row[256];
-      std::snprintf(row, sizeof row, "%zu,%zu,%d,%.3f,%.3f,%.2f,%.2f,%.2f,%.3f,%.3f,%016llx",
+      std::snprintf(row, sizeof row, "%zu,%zu,%d,%.3f,%.3f,%.2f,%.2f,%.2f,%.3f,%.3f,%.3f,%016llx",
                     mesh.vertices.size(), mesh.triangles.size(), points, detect.value(clock),
                     force.value(clock), positions.value(clock), normals.value(clock), memory,
                     copied.value(clock), without_samples.value(clock),
+                    force_beside_drawing(touch, shape, poses).value(clock),
                     static_cast<unsigned long long>(hash.value()));
       double square = 0;
       for (const float x : bare.positions()) square += double(x) * double(x);

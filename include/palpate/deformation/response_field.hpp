@@ -11,6 +11,7 @@
 #include <array>
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace palpate {
 
@@ -49,7 +50,12 @@ class ResponseFieldDeformation {
     if (p_.least_radius == S(0)) p_.least_radius = static_cast<S>(0.25 * field_->mesh().length);
     if (!p_.normals) return;
     normals_ = MeshNormals(mesh.triangles, mesh.vertices.size());
-    each_at_rest([this](std::size_t v, float x, float y, float z) { normals_.places().set(v, x, y, z); });
+    std::array<std::vector<float>, 3> rest;
+    for (auto& axis : rest) axis.resize(mesh.vertices.size());
+    each_at_rest([&rest](std::size_t v, float x, float y, float z) {
+      rest[0][v] = x, rest[1][v] = y, rest[2][v] = z;
+    });
+    normals_.places().set_row(0, 0, rest[0].size(), rest[0].data(), rest[1].data(), rest[2].data());
     normals_.keep_rest();
   }
 
