@@ -9,13 +9,51 @@
 #include "truth/case.hpp"
 
 #include <palpate/response/response_contact.hpp>
+#include <palpate/surface/ellipsoid.hpp>
+#include <palpate/surface/mesh_extremal_points.hpp>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 
 using namespace bench;
+
+namespace {
+
+std::size_t nearest_vertex(const palpate::MeshData<double>& mesh, const V& p) {
+  const auto distance = [&p](const V& v) { return (v - p).squaredNorm(); };
+  return static_cast<std::size_t>(std::ranges::min_element(mesh.vertices, {}, distance) - mesh.vertices.begin());
+}
+
+/// k1 + k2 [1/m] at a place: an ellipsoid's if there are semi-axes, else the mesh's, averaged over half a ball's radius.
+double curvature_at(const V& place, double radius, const palpate::MeshData<double>& mesh, const std::string& meta) {
+  if (const auto axes = numbers(meta, "semi_axes_m"); !axes.empty()) {
+    const palpate::Ellipsoid<double> body({.axes = vector(axes), .centre = vector(numbers(meta, "centre_m"))});
+    const auto k = body.curvature(place);
+    return k.k1 + k.k2;
+  }
+  return 2 * palpate::mean_curvature(palpate::TriangleMesh<double>(mesh), 0.5 * radius)[nearest_vertex(mesh, place)];
+}
+
+/// The fixed region: what lies below a plane, if that is what vertices.csv says, else where the nearest vertex is fixed.
+palpate::FixedRegion fixed_region(const std::string& folder, const palpate::MeshData<double>& mesh, const std::string& meta) {
+  const auto y_max = numbers(meta, "y_max_m");
+  double y_low = 1e30;
+  for (const V& v : mesh.vertices) y_low = (std::min)(y_low, v.y());
+  const double y_fixed = (y_max.empty() ? y_low : y_max[0]) + 1e-6;
+  std::vector<std::uint8_t> fixed;
+  bool below = true;
+  for (const auto& row : csv_rows(folder + "vertices.csv")) {  // vertex,x,y,z,area_m2,region,r_over_a
+    fixed.push_back(row.at(5) == -1);
+    below = below && fixed.back() == (row[2] <= y_fixed);
+  }
+  if (below) return [y_fixed](const V& p) { return p.y() <= y_fixed; };
+  return [fixed, &mesh](const V& p) { return fixed.at(nearest_vertex(mesh, p)) != 0; };
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   if (argc < 4) {
@@ -25,14 +63,10 @@ int main(int argc, char** argv) {
   const std::string folder = std::string(argv[1]) + "/", meta = read_text(folder + "meta.json");
   const palpate::MeshData<double> mesh = read_obj(read_text(folder + "surface.obj"));
   const double E = numbers(meta, "E_Pa").at(0), nu = numbers(meta, "nu").at(0);
-  const auto y_max = numbers(meta, "y_max_m");
-  double y_low = 1e30;
-  for (const V& v : mesh.vertices) y_low = (std::min)(y_low, v.y());
-  const double y_fixed = (y_max.empty() ? y_low : y_max[0]) + 1e-6;
   palpate::ResponseField::Params params{.E = E, .nu = nu};
   if (argc > 4) params.mesh.vertices = std::atof(argv[4]);
   const auto t0 = std::chrono::steady_clock::now();
-  const palpate::ResponseField field(mesh, [&](const V& p) { return p.y() <= y_fixed; }, params);
+  const palpate::ResponseField field(mesh, fixed_region(folder, mesh, meta), params);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count();
   std::printf("%s: %zu solve vertices, %zu touchable nodes, %.1f MB, set-up %.2f s\n", argv[1], field.mesh().vertices.size(),
               field.touch().nodes().size(), double(field.memory()) / 1e6, seconds);
@@ -56,11 +90,7 @@ int main(int argc, char** argv) {
   if (ball != std::string::npos) {
     const V place = vector(numbers(meta, "first_touch_point_m", ball)), normal = -vector(numbers(meta, "inward_normal", ball));
     const double radius = numbers(meta, "radius_m", ball).at(0);
-    double curvature = 0;
-    if (const auto axes = numbers(meta, "semi_axes_m"); !axes.empty()) {  // k1 + k2 of an ellipsoid: divergence of the unit normal
-      const V weight = vector(axes).array().square().inverse(), g = place.cwiseProduct(weight);
-      curvature = (weight.sum() - g.dot(weight.cwiseProduct(g)) / g.squaredNorm()) / g.norm();
-    }
+    const double curvature = curvature_at(place, radius, mesh, meta);
     for (double depth : depths) {
       const auto pressed = tick.solve(palpate::SphereContact<double>{place, normal, radius, curvature, depth});
       write(depth, {pressed.on_body(normal)}, {V::Zero()});
