@@ -44,6 +44,7 @@ struct PlacedContact {
   Vec3<double> tilt = Vec3<double>::Zero();       ///< / mu
   double twist = 0;                               ///< moment about m / mu
   Vec3<double> tool_tilt = Vec3<double>::Zero();  ///< part of `tilt` by which the tool turns a narrow patch
+  Vec3<double> swayed = Vec3<double>::Zero();     ///< displacement by the loads with which the tool turns it, whole
   Vec3<double> felt_tilt = Vec3<double>::Zero();  ///< what the tool feels of `tilt`
   Vec3<double> turn = Vec3<double>::Zero();       ///< its part of second order
   Vec3<double> push = Vec3<double>::Zero();

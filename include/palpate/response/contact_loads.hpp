@@ -97,10 +97,10 @@ inline void turn_patch(const ResponseField& field, PlacedContact& c) noexcept {
   c.tool_tilt = (1 - c.moments.share) * tilt_stiffness(c, field.nu()) * lean;
   c.twist = twist_stiffness(field, c) * c.rotation.dot(c.m);
   // The half-space's own, by reciprocity with the tilt of a stuck disc in `press`.
-  Vec3<double> moved = MovedByLoads(field, c).by(0, c.tool_tilt) +
-                       0.5 * c.grip * stuck_load(c.a, field.nu()) * lean + c.twist * moved_by_twist(field, c);
-  if (c.moments.share > 0) moved += c.moments.G.transpose() * c.moments.give * c.moments.leaning(lean);
-  c.rhs -= kept(moved.norm(), c) * moved;
+  c.swayed = MovedByLoads(field, c).by(0, c.tool_tilt) +
+             0.5 * c.grip * stuck_load(c.a, field.nu()) * lean + c.twist * moved_by_twist(field, c);
+  if (c.moments.share > 0) c.swayed += c.moments.G.transpose() * c.moments.give * c.moments.leaning(lean);
+  c.rhs -= kept(c.swayed.norm(), c) * c.swayed;
 }
 
 /// Sets the loads of a contact with P, and takes what they move its patch from `rhs`. `second_order`: null without.
@@ -130,12 +130,13 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
   c.dipole = stuck * pushed - 2 * stiff * (moved.radial.dot(P) + c.bent[0]);
   c.tilt = -0.5 * stuck * dragged - stiff * leaning;
   const Vec3<double> spread = moved.by(c.dipole, c.tilt);
-  const double resolved = kept(moved.size(spread, c.dipole, c.tilt), c);
+  // Half of d is for both: for what the tool turns, too.
+  const double swayed = c.swayed.norm(), resolved = kept(moved.size(spread, c.dipole, c.tilt) + swayed, c);
   c.dipole *= resolved;
   c.tilt *= resolved;
   c.tilt += c.tool_tilt;
   c.felt_tilt = c.tilt;
-  c.rhs -= resolved * spread;
+  c.rhs += (kept(swayed, c) - resolved) * c.swayed - resolved * spread;
 
   if (second_order == nullptr) return;
   const SecondOrder& k = *second_order;

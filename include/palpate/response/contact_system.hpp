@@ -100,6 +100,7 @@ class ContactSystem {
     c.delta_t.setZero();
     c.tilt.setZero();
     c.tool_tilt.setZero();
+    c.swayed.setZero();
     c.felt_tilt.setZero();
     c.turn.setZero();
     c.push.setZero();
