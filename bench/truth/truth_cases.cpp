@@ -27,10 +27,13 @@ std::size_t nearest_vertex(const palpate::MeshData<double>& mesh, const V& p) {
   return static_cast<std::size_t>(std::ranges::min_element(mesh.vertices, {}, distance) - mesh.vertices.begin());
 }
 
-/// k1 + k2 [1/m] at a place: an ellipsoid's if there are semi-axes, else the mesh's, averaged over half a ball's radius.
+/// k1 + k2 [1/m] at a place: an ellipsoid's if there are semi-axes, centred at the origin unless its geometry says otherwise; else the
+/// mesh's, averaged over half a ball's radius.
 double curvature_at(const V& place, double radius, const palpate::MeshData<double>& mesh, const std::string& meta) {
   if (const auto axes = numbers(meta, "semi_axes_m"); !axes.empty()) {
-    const palpate::Ellipsoid<double> body({.axes = vector(axes), .centre = vector(numbers(meta, "centre_m"))});
+    const std::size_t geometry = meta.find("\"geometry\"");  // a contact, too, has a centre
+    const auto centre = geometry == std::string::npos ? std::vector<double>{} : numbers(meta, "centre_m", geometry, meta.find('}', geometry));
+    const palpate::Ellipsoid<double> body({.axes = vector(axes), .centre = centre.empty() ? V(V::Zero()) : vector(centre)});
     const auto k = body.curvature(place);
     return k.k1 + k.k2;
   }
