@@ -21,7 +21,7 @@ echo "| --- | --- |"
 echo "| machine | $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1), $(nproc) cores, $(uname -sm) |"
 echo "| load at the end | $(cut -d' ' -f1-3 /proc/loadavg): above 1 others used the machine, and times are upper bounds |"
 echo "| compiler | $("$(sed -n 's/^CMAKE_CXX_COMPILER:[A-Z]*=//p' build/bench/CMakeCache.txt)" --version | head -1) |"
-echo "| flags, times |$(flags palpate_bench_force_budget) |"
+echo "| flags, times |$(flags palpate_bench_force_budget | sed "s/ -DSCALAR=double//") |"
 echo "| flags, instruction counts |$(flags palpate_bench_skip_point | sed 's/-DCOMPOSITION=point//') |"
 commit=$(git rev-parse --short HEAD 2>/dev/null || echo "none, not in git")
 if git rev-parse HEAD >/dev/null 2>&1 && ! git diff --quiet HEAD; then commit+=", with changes"; fi

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 
 /// @file  Does every force tick keep its budget? One row for each composition, number of points and of regions: back to
-/// back, and paced at 1 kHz, where a dozen scenes take turns and each finds the caches used by the others.
+/// back, and paced at 1 kHz, where a dozen scenes take turns and each finds the caches used by the others. Compiled once for
+/// each SCALAR.
 ///
 /// After every tick an empty tick runs: arithmetic without memory that takes as long as the median tick. Both are
 /// exposed to the machine for the same time, so it holds up as many ticks of the library as empty ones: an offender has
@@ -183,7 +184,8 @@ struct Bench {
     const Superellipsoid<S> pill({.axes = Vec3<S>(S(0.06), S(0.04), S(0.04)), .e1 = S(0.5), .e2 = S(0.5)});
     body<S>("superellipsoid", pill, 0.04);
     body<S>("superellipsoid e1 0.3 e2 0.7",  // powers that are no whole numbers
-            Superellipsoid<S>({.axes = Vec3<S>(S(0.06), S(0.04), S(0.04)), .e1 = S(0.3), .e2 = S(0.7)}), 0.04);
+            Superellipsoid<S>({.axes = Vec3<S>(S(0.06), S(0.04), S(0.04)), .e1 = S(0.3), .e2 = S(0.7)}),
+            0.04);
     body<S>("superellipsoid sampled", SampledSurface<Superellipsoid<S>>(pill, {.spacing = S(2e-3)}), 0.04);
     const MeshSurface<S> mesh(TriangleMesh<S>(ellipsoid<S>().mesh(2000)));
     add<ContactSolver<MeshSurface<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<8>>>(
@@ -308,13 +310,13 @@ int main(int argc, char** argv) {
                "over_budget_beside_held_up_empty,mean_force_N\n");
   Bench bench{.out = out, .machine = machine};
   std::printf("reading the clock takes %lld ns, taken off all times\n", static_cast<long long>(bench.clock));
-  bench.all<double>();
-  bench.all<float>();
+  bench.all<SCALAR>();
   bench.back_to_back();
   bench.paced();
   std::fclose(machine);
   std::printf(
-      "force budget: %s, %d of %d rows over it (median or 99.9 %%); in %d more the machine was held up\n",
-      bench.offenders == 0 ? "PASS" : "OFFENDERS", bench.offenders, bench.rows, bench.held_up);
+      "force budget, %s: %s, %d of %d rows over it (median or 99.9 %%); in %d more the machine was held up\n",
+      scalar_name<SCALAR>, bench.offenders == 0 ? "PASS" : "OFFENDERS", bench.offenders, bench.rows,
+      bench.held_up);
   return 0;
 }

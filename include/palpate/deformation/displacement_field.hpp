@@ -6,12 +6,11 @@
 #include <palpate/core/error.hpp>
 #include <palpate/core/vertex_writer.hpp>
 #include <palpate/deformation/concept.hpp>
-#include <palpate/deformation/vertex_normals.hpp>
+#include <palpate/deformation/partition_normals.hpp>
 #include <palpate/interpolation/concept.hpp>
 #include <palpate/interpolation/neighbourhood.hpp>
 
 #include <algorithm>
-#include <numeric>
 #include <utility>
 
 namespace palpate {
@@ -55,8 +54,7 @@ class DisplacementField {
     contacts_.reserve(p_.contacts);
     corners_.reserve(p_.contacts * partition.points().size());
     dirty_.assign(partition.faces().size(), 1);
-    if (p_.normals) set_up_normals(mesh);
-    forget();
+    if (p_.normals) normals_ = PartitionNormals<S>(partition, mesh.triangles);
   }
 
   /// Fills the whole buffer with the undeformed shape. The next write() starts from it.
@@ -70,10 +68,10 @@ class DisplacementField {
     if (!p_.normals || out.normals == nullptr) return;
     std::fill(dirty_.begin(), dirty_.end(), std::uint8_t{1});
     for (std::size_t f = 0; f < dirty_.size(); ++f) {
-      place_at_rest(f);
-      write_normals_in_row(f, out);
+      normals_.place_at_rest(part, part.faces()[f]);
+      normals_.write_in_row(part, f, out);
     }
-    write_normals_apart(out);
+    normals_.write_apart(part, dirty_, out);
   }
 
   /// Writes the shape under `contacts`. `corners` holds the displacements u_i [m] that each contact causes at the
@@ -96,7 +94,7 @@ class DisplacementField {
       const Face<S>& face = partition().faces()[f];
       for (std::size_t first = face.first; first < face.first + face.count; first += block_size)
         write_block(f, first, (std::min)(block_size, face.first + face.count - first), extent, out);
-      if (with_normals) write_normals_in_row(f, out);
+      if (with_normals) normals_.write_in_row(partition(), f, out);
       moved.vertices += face.count;
     }
     if (moved.vertices > 0) {
@@ -104,7 +102,7 @@ class DisplacementField {
         moved.lower[static_cast<int>(axis)] = extent.lower[axis].minCoeff();
         moved.upper[static_cast<int>(axis)] = extent.upper[axis].maxCoeff();
       }
-      if (with_normals) write_normals_apart(out);
+      if (with_normals) normals_.write_apart(partition(), dirty_, out);
     }
     loads_.swap(previous_);
     dents_.swap(previous_dents_);
@@ -161,48 +159,6 @@ class DisplacementField {
     [[nodiscard]] bool operator==(const Dent&) const noexcept = default;
   };
 
-  void set_up_normals(const MeshData<S>& mesh) {
-    const auto order = partition().order();
-    std::vector<std::uint32_t> slot_of(order.size()), face_of(order.size());
-    for (std::uint32_t slot = 0; slot < order.size(); ++slot) slot_of[order[slot]] = slot;
-    std::vector<std::array<std::uint32_t, 3>> triangles = mesh.triangles;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      for (std::uint32_t& v : triangles[t]) {
-        if (v >= order.size()) fail_at(name, "vertex does not exist", "triangle", t, static_cast<double>(v));
-        v = slot_of[v];
-      }
-    }
-    for (std::uint32_t f = 0; f < dirty_.size(); ++f) {
-      const Face<S>& face = partition().faces()[f];
-      for (std::size_t slot = face.first; slot < face.first + face.count; ++slot) face_of[slot] = f;
-    }
-    const VertexRings rings(triangles, order.size());
-    std::vector<std::array<std::uint32_t, 2>> around;  // face, slot: of other faces, next to this one
-    for (const Face<S>& face : partition().faces()) {
-      std::vector<std::uint32_t> inside(face.count);
-      std::iota(inside.begin(), inside.end(), static_cast<std::uint32_t>(face.first));
-      around.clear();
-      for (const std::uint32_t slot : inside) {
-        for (const std::uint32_t other : rings[slot])
-          if (face_of[other] != face_of[slot]) around.push_back({face_of[other], other});
-      }
-      inside_.push_back(normals_.add(rings, inside, {face.first, face.count}));
-      std::sort(around.begin(), around.end());
-      around.erase(std::unique(around.begin(), around.end()), around.end());
-      rim_start_.push_back(rim_.size());
-      for (std::size_t k = 0; k < around.size();) {
-        const std::uint32_t f = around[k][0];
-        std::vector<std::uint32_t> slots;
-        for (; k < around.size() && around[k][0] == f; ++k) slots.push_back(around[k][1]);
-        rim_.push_back({f, normals_.add(rings, slots)});
-      }
-    }
-    rim_start_.push_back(rim_.size());
-    std::size_t longest = 0;
-    for (const Face<S>& face : partition().faces()) longest = (std::max)(longest, face.count);
-    place_ = VertexPlaces(longest, normals_.packed_reads(order.size()));
-  }
-
   void forget() noexcept {
     for (std::size_t c = 0; c < p_.contacts; ++c) {
       previous_[c] = Load{};
@@ -212,7 +168,7 @@ class DisplacementField {
     contacts_.clear();
     corners_.clear();
     if (!p_.normals) return;
-    for (std::size_t f = 0; f < dirty_.size(); ++f) place_at_rest(f);
+    for (const Face<S>& face : partition().faces()) normals_.place_at_rest(partition(), face);
   }
 
   // Keeps the input; false when it is the same as in the last tick.
@@ -281,68 +237,20 @@ class DisplacementField {
       extent.take(axis, x[axis]);
     }
     put(first, count, x[0].value, x[1].value, x[2].value, out);
-    if (p_.normals)
-      place_.set_row(first - part.faces()[f].first, first, count, x[0].value, x[1].value, x[2].value);
-  }
-  void place_at_rest(std::size_t f) noexcept {
-    const FacePartition<S>& part = partition();
-    const Face<S>& face = part.faces()[f];
-    place_.set_row(0, face.first, face.count, part.rest(0) + face.first, part.rest(1) + face.first,
-                   part.rest(2) + face.first);
-  }
-
-  // The undeformed normal in a slot.
-  [[nodiscard]] auto rest_normal() const noexcept {
-    return [this](std::size_t slot) {
-      const auto normal = [this, slot](int axis) {
-        return static_cast<float>(partition().normal(axis)[slot]);
-      };
-      return Packed3{normal(0), normal(1), normal(2)};
-    };
-  }
-  template <Real T>
-  [[nodiscard]] auto normal_writer(const VertexBuffer<T>& out) const noexcept {
-    return [to = detail::VertexWriter<T>(out.normals, out.normal_stride), order = partition().order().data()](
-               const auto& slot, const auto& x, const auto& y, const auto& z) {
-      to.put_register([&](std::uint32_t k) { return order[slot(k)]; }, x, y, z);
-    };
-  }
-  // Of face f's vertices that need no other face's, right after their places have been written.
-  template <Real T>
-  PALPATE_FLATTEN void write_normals_in_row(std::size_t f, const VertexBuffer<T>& out) const noexcept {
-    normals_.each_in_row(inside_[f], place_, rest_normal(), normal_writer(out));
-  }
-  template <Real T>
-  PALPATE_FLATTEN void write_normals_apart(const VertexBuffer<T>& out) const noexcept {
-    for (std::size_t f = 0; f < dirty_.size(); ++f) {
-      if (!dirty_[f]) continue;
-      normals_.each_apart(inside_[f], place_, rest_normal(), normal_writer(out));
-      for (std::size_t k = rim_start_[f]; k < rim_start_[f + 1]; ++k)
-        if (!dirty_[rim_[k].face])
-          normals_.each_apart(rim_[k].vertices, place_, rest_normal(), normal_writer(out));
-    }
+    if (p_.normals) normals_.place(part.faces()[f], first, count, x[0].value, x[1].value, x[2].value);
   }
 
   static constexpr const char* name = "DisplacementField";
 
-  struct Rim {  // vertices of another face next to this one
-    std::uint32_t face;
-    VertexNormals::Group vertices;
-  };
-
   Params p_;
   I interpolation_;
   PALPATE_NO_UNIQUE_ADDRESS N neighbourhood_;
-  VertexNormals normals_;
-  std::vector<VertexNormals::Group> inside_;  // by face
-  std::vector<Rim> rim_;
-  std::vector<std::size_t> rim_start_;
+  PartitionNormals<S> normals_;
   std::vector<Load> loads_, previous_;
   std::vector<Dent> dents_, previous_dents_;
   std::vector<ContactDisplacement<S>> contacts_;
   std::vector<Vec3<S>> corners_;
   std::vector<std::uint8_t> dirty_;
-  VertexPlaces place_;  // with normals: of one face's slots after the other's, and packed
   std::size_t active_ = 0, previous_count_ = 0;
 };
 

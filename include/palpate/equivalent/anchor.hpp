@@ -54,7 +54,6 @@ template <class Slip, class Skew, FrictionLaw F, ForceLaw L>
   using S = typename L::Scalar;
   Vec3<S> tip = X * anchor.point_T;
   Vec3<S> D_t = tangential<S>(tip - anchor.origin, anchor.normal);
-  Vec3<S> along = unit_or<S>(D_t, Vec3<S>::Zero());
   const Vec3<S> motion = tip - anchor.tip;
   const S trial = D_t.norm();
   const S travel = motion.norm();
@@ -62,13 +61,14 @@ template <class Slip, class Skew, FrictionLaw F, ForceLaw L>
   const SlipTrial<S> step{depth, normal_force, trial, before, travel};
   const SlipResult<S> now = Slip::template advance<Skew>(friction, law, step, anchor.slip);
 
+  Vec3<S> along;
   if constexpr (Slip::shifts_by_travel) {
     if (anchor.slip.sliding) {
       anchor.origin += tangential<S>(motion, anchor.normal);
       anchor.normal = normal;
       D_t = tangential<S>(tip - anchor.origin, anchor.normal);
-      along = unit_or<S>(D_t, Vec3<S>::Zero());
     }
+    along = unit_or<S>(D_t, Vec3<S>::Zero());
   } else if (now.stretch < trial) {
     const S slipped = trial - now.stretch;
     // p0 trails the tip by the stretch, so n lags the present normal by that distance.
@@ -83,6 +83,8 @@ template <class Slip, class Skew, FrictionLaw F, ForceLaw L>
       anchor.point_T = X.to_tool(tip);
     }
     anchor.origin = tip - D_t + depth * anchor.normal;
+  } else {
+    along = unit_or<S>(D_t, Vec3<S>::Zero());
   }
   anchor.tip = tip;
   return {-now.force.tangential * along, tip, D_t, now.force.normal};

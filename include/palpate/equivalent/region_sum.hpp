@@ -7,7 +7,9 @@
 #include <palpate/surface/concept.hpp>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 
 namespace palpate {
 
@@ -67,11 +69,52 @@ struct RegionSum {
     if (magnitude > S(0)) return moment / magnitude;
     return place;
   }
+  /// |force| [N].
+  [[nodiscard]] S normal_force() const noexcept { return force.norm(); }
   /// Unit outward normal of the region: the direction of its force.
   [[nodiscard]] Vec3<S> normal() const noexcept {
     const Vec3<S> n = unit_or<S>(force, Vec3<S>::Zero());
     return n.squaredNorm() > S(0) ? n : unit_or<S>(exit, Vec3<S>::UnitY());
   }
+};
+
+/// The RegionSum of a tool that is one point, set by one add(): the same to rounding, without roots and divisions.
+template <Real S>
+class PointForce {
+ public:
+  Vec3<S> force = Vec3<S>::Zero();   ///< on the tool [N]
+  Vec3<S> torque = Vec3<S>::Zero();  ///< about the tool's centre of mass [N m]
+  S deepest = S(0);                  ///< delta [m]
+  std::uint32_t points = 0;
+
+  /// As RegionSum's; the area is not used.
+  void add(const Vec3<S>& x, const Vec3<S>& arm, const Vec3<S>& gradient, S depth, S f,
+           S /*point_area*/) noexcept {
+    force = f * gradient;
+    torque = arm.cross(force);
+    deepest = depth;
+    points = 1;
+    place_ = x;
+    normal_ = gradient;
+    normal_force_ = f;
+    const S square = gradient.squaredNorm();
+    if (std::abs(square - S(1)) <= S(8) * std::numeric_limits<S>::epsilon()) return;
+    normal_ = unit_or<S>(gradient, Vec3<S>::UnitY());  // over an edge: surface/concept.hpp
+    normal_force_ = f * std::sqrt(square);
+  }
+  void scale(S factor) noexcept {
+    force *= factor;
+    torque *= factor;
+    normal_force_ *= factor;
+  }
+  [[nodiscard]] S area() const noexcept { return S(0); }
+  [[nodiscard]] Vec3<S> centre() const noexcept { return place_; }
+  [[nodiscard]] S normal_force() const noexcept { return normal_force_; }
+  [[nodiscard]] Vec3<S> normal() const noexcept { return normal_; }
+
+ private:
+  Vec3<S> place_ = Vec3<S>::Zero(), normal_ = Vec3<S>::UnitY();
+  S normal_force_ = S(0);
 };
 
 /// A RegionSum in the making, `lane_count` points at a time: lane i adds up the points i of all leaves, total() adds the lanes.

@@ -74,7 +74,6 @@ class DuffingForce {
     if (p_.c1 == S(0) && !(p_.c3 > S(0))) {
       fail("DuffingForce", "c3 [N/m^3] must be > 0 where c1 [N/m] is 0", static_cast<double>(p_.c3));
     }
-    cbrt_c3_ = std::cbrt(p_.c3);
     if (p_.c3 < S(0)) find_fold();
   }
 
@@ -150,10 +149,12 @@ class DuffingForce {
     // D = D0 y with a y + b y^3 = 1. The smaller of the two pure laws' roots is D0, the cubic one within 3.2 %; then the root
     // y lies in [0.66, 1.14], a and b are of order 1 at most, and a polynomial is within 2.7 % of it: two of Halley's
     // steps, of cubic convergence, do the rest. a and b come from the rounded D0, so its error does not count.
-    S start = p_.c1 > S(0) ? force / p_.c1 : std::numeric_limits<S>::infinity();
+    S start = per_c1_ <= (std::numeric_limits<S>::max)() ? force * per_c1_
+              : p_.c1 > S(0)                             ? force / p_.c1  // subnormal
+                                                         : std::numeric_limits<S>::infinity();
     bool linear = true;
     if (p_.c3 > S(0)) {
-      const S cubic = detail::rough_cbrt(force) / cbrt_c3_;
+      const S cubic = detail::rough_cbrt(force) * per_cbrt_c3_;
       linear = start < cubic;
       start = (std::min)(start, cubic);
     }
@@ -178,7 +179,7 @@ class DuffingForce {
  protected:
   struct Known {};
   /// Of parameters that are known to be good; where it softens, depth() has half the digits next to the fold.
-  DuffingForce(const Params& params, Known) noexcept : p_(params), cbrt_c3_(std::cbrt(params.c3)) {
+  DuffingForce(const Params& params, Known) noexcept : p_(params) {
     if (!(p_.c3 < S(0))) return;
     max_depth_ = std::sqrt(p_.c1 / (S(-3) * p_.c3));
     max_force_ = S(2) / S(3) * p_.c1 * max_depth_;
@@ -231,7 +232,7 @@ class DuffingForce {
   }
 
   Params p_;
-  S cbrt_c3_ = S(0);
+  S per_c1_ = S(1) / p_.c1, per_cbrt_c3_ = S(1) / std::cbrt(p_.c3);
   S max_depth_ = std::numeric_limits<S>::infinity();
   S max_force_ = std::numeric_limits<S>::infinity();
   S max_force_rest_ = S(0);

@@ -139,7 +139,8 @@ class ContactSolver {
   [[nodiscard]] const Friction& friction_law() const noexcept { return friction_; }
 
  private:
-  using Sums = std::array<RegionSum<S>, max_regions>;
+  using Sum = typename Collector<Contacts, S>::template Sum<Force>;
+  using Sums = std::array<Sum, max_regions>;
 
   struct Stuck {  // what friction remembers of a region
     Anchor<S> anchor;
@@ -187,10 +188,10 @@ class ContactSolver {
   }
 
   /// One region: equivalent contact, rate term, friction; adds its force to the wrench.
-  void press(std::size_t k, RegionSum<S>& sum, const Pose<S>& X, [[maybe_unused]] S dt, Wrench<S>& wrench) noexcept {
+  void press(std::size_t k, Sum& sum, const Pose<S>& X, [[maybe_unused]] S dt, Wrench<S>& wrench) noexcept {
     const RegionSlot& slot = collector_.slot(k);
     const Vec3<S> normal = sum.normal();
-    S normal_force = sum.force.norm();
+    S normal_force = sum.normal_force();
     const S depth = equivalent_depth(sum, normal_force);
     if constexpr (is_rate_dependent) {
       if (dt > S(0) && last_.ticks > 0 && normal_force > (std::numeric_limits<S>::min)()) {
@@ -251,7 +252,7 @@ class ContactSolver {
   }
 
   /// D_n of the point contact with the same force (IV.C); a single point is its own.
-  [[nodiscard]] S equivalent_depth(const RegionSum<S>& sum, S normal_force) const noexcept {
+  [[nodiscard]] S equivalent_depth(const Sum& sum, S normal_force) const noexcept {
     if constexpr (std::same_as<Contacts, SinglePoint>) {
       return sum.deepest;
     } else {
@@ -306,7 +307,7 @@ class ContactSolver {
       }
       Anchor<S>& anchor = stuck_[k].anchor;
       const auto& law = detail::law_at(force_, sums[k].centre());
-      const S normal_force = sums[k].force.norm();
+      const S normal_force = sums[k].normal_force();
       const S depth = law.depth(normal_force);
       if (!(weight > S(0))) {  // new, or from regions without force
         anchor = Anchor<S>::begin(X, sums[k].centre(), sums[k].normal(), depth);

@@ -3,7 +3,8 @@
 
 /// @file  From the tool's pose to the sums of its regions: one collector per topology, all with the same interface.
 ///
-///     Status collect(object, tool, force, X, sums)   finds what touches and adds it up, one sum per slot
+///     Sum<Force>                                      what adds up a region
+///     Status collect(object, tool, force, X, sums)    finds what touches and adds it up, one sum per slot
 ///     slot(k), changed(), reset()                     the regions' identity
 
 #include <palpate/core/absent.hpp>
@@ -20,6 +21,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <type_traits>
 #include <vector>
 
 namespace palpate {
@@ -120,9 +122,13 @@ class Collector<SinglePoint, S> {
  public:
   Collector(const SinglePoint&, const PointTool<S>&) noexcept {}
 
+  /// A map adds a force of its own, whose direction is another.
+  template <ForceModel Force>
+  using Sum = std::conditional_t<ForceMap<Force>, RegionSum<S>, PointForce<S>>;
+
   template <ContactSurface Object, ForceModel Force>
   Status collect(const Object& object, const PointTool<S>& tool, const Force& force, const Pose<S>& X,
-                 std::array<RegionSum<S>, 1>& sums) noexcept {
+                 std::array<Sum<Force>, 1>& sums) noexcept {
     const Vec3<S> x = X * tool.tip;
     const Penetration<S> in = object.penetration(x);
     const bool touching = in.depth > S(0);
@@ -145,6 +151,9 @@ class Collector<SinglePoint, S> {
 template <MassSharing Sharing, Real S>
 class Collector<SingleRegion<Sharing>, S> {
  public:
+  template <ForceModel>
+  using Sum = RegionSum<S>;
+
   Collector(const SingleRegion<Sharing>&, const ToolPoints<S>& tool)
       : share_(detail::leaf_shares<Sharing>(tool)) {}
 
@@ -178,6 +187,9 @@ class Collector<SingleRegion<Sharing>, S> {
 template <std::size_t N, MassSharing Sharing, Real S>
 class Collector<Regions<N, Sharing>, S> {
  public:
+  template <ForceModel>
+  using Sum = RegionSum<S>;
+
   Collector(const Regions<N, Sharing>& regions, const ToolPoints<S>& tool)
       : tracker_(ProximityGraph<S>(tool, static_cast<S>(regions.distance)), tool.size()),
         share_(detail::leaf_shares<Sharing>(tool)),
