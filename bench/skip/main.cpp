@@ -168,6 +168,7 @@ auto make(bool normals) {
   else
     return Composition::template make<double>();
 }
+
 /// A hundred ticks.
 template <class Scene>
 [[gnu::noinline]] double counted(Scene& scene, bool resting, double height) {

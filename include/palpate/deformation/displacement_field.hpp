@@ -60,18 +60,22 @@ class DisplacementField {
   /// Fills the whole buffer with the undeformed shape. The next write() starts from it.
   template <Real T>
   void write_rest(const VertexBuffer<T>& out) noexcept {
-    forget();
+    std::fill(previous_.begin(), previous_.end(), Load{});
+    std::fill(previous_dents_.begin(), previous_dents_.end(), Dent{});
+    previous_count_ = 0;
+    contacts_.clear();
+    corners_.clear();
+    std::fill(dirty_.begin(), dirty_.end(), std::uint8_t{1});
     const FacePartition<S>& part = partition();
-    for (const Face<S>& face : part.faces())
+    const bool with_normals = p_.normals && out.normals != nullptr;
+    for (std::size_t f = 0; f < dirty_.size(); ++f) {
+      const Face<S>& face = part.faces()[f];
       put(face.first, face.count, part.rest(0) + face.first, part.rest(1) + face.first,
           part.rest(2) + face.first, out);
-    if (!p_.normals || out.normals == nullptr) return;
-    std::fill(dirty_.begin(), dirty_.end(), std::uint8_t{1});
-    for (std::size_t f = 0; f < dirty_.size(); ++f) {
-      normals_.place_at_rest(part, part.faces()[f]);
-      normals_.write_in_row(part, f, out);
+      if (p_.normals) normals_.place_at_rest(part, face);
+      if (with_normals) normals_.write_in_row(part, f, out);
     }
-    normals_.write_apart(part, dirty_, out);
+    if (with_normals) normals_.write_apart(part, dirty_, out);
   }
 
   /// Writes the shape under `contacts`. `corners` holds the displacements u_i [m] that each contact causes at the
@@ -158,18 +162,6 @@ class DisplacementField {
     }
     [[nodiscard]] bool operator==(const Dent&) const noexcept = default;
   };
-
-  void forget() noexcept {
-    for (std::size_t c = 0; c < p_.contacts; ++c) {
-      previous_[c] = Load{};
-      previous_dents_[c] = Dent{};
-    }
-    previous_count_ = 0;
-    contacts_.clear();
-    corners_.clear();
-    if (!p_.normals) return;
-    for (const Face<S>& face : partition().faces()) normals_.place_at_rest(partition(), face);
-  }
 
   // Keeps the input; false when it is the same as in the last tick.
   bool take(std::span<const ContactDisplacement<S>> contacts, std::span<const Vec3<S>> corners) noexcept {

@@ -97,7 +97,7 @@ class PointForce {
     place_ = x;
     normal_ = gradient;
     normal_force_ = f;
-    const S square = gradient.squaredNorm();
+    const S square = gradient.squaredNorm();  // of a unit vector off 1 by its roundings
     if (std::abs(square - S(1)) <= S(8) * std::numeric_limits<S>::epsilon()) return;
     normal_ = unit_or<S>(gradient, Vec3<S>::UnitY());  // over an edge: surface/concept.hpp
     normal_force_ = f * std::sqrt(square);

@@ -13,6 +13,8 @@ namespace {
 
 template <class S>
 void check_same(const PointForce<S>& point, const RegionSum<S>& sum) {
+  // A gradient is taken for a unit vector as it is within 4 epsilon of one (8 of its square); the rest is for the roundings of a
+  // root, divisions and products on either side.
   constexpr S rounding = S(16) * std::numeric_limits<S>::epsilon();
   CHECK(point.force == sum.force);
   CHECK(point.torque == sum.torque);
