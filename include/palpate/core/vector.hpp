@@ -45,7 +45,7 @@ template <Real S>
   const S square = v.squaredNorm();
   // Neither overflowed nor underflowed: the usual case.
   if (square > (std::numeric_limits<S>::min)() / std::numeric_limits<S>::epsilon() && is_finite(square))
-    return v / std::sqrt(square);
+    return v * (std::sqrt(square) * (S(1) / square));  // root and division side by side
   const S length = v.stableNorm();
   if (length > (std::numeric_limits<S>::min)()) return v / length;
   return otherwise;

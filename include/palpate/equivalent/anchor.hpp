@@ -72,7 +72,7 @@ template <class Slip, class Skew, FrictionLaw F, ForceLaw L>
   } else if (now.stretch < trial) {
     const S slipped = trial - now.stretch;
     // p0 trails the tip by the stretch, so n lags the present normal by that distance.
-    const Vec3<S> turned = anchor.normal + (normal - anchor.normal) * (slipped / (slipped + now.stretch));
+    const Vec3<S> turned = anchor.normal + (normal - anchor.normal) * (slipped / trial);
     anchor.normal = unit_or<S>(turned, normal);
     along = unit_or<S>(tangential<S>(D_t, anchor.normal), Vec3<S>::Zero());
     D_t = now.stretch * along;

@@ -86,31 +86,22 @@ class TriangleBvh {
   template <class Grow, class Visit>
   Nearest closest_and_near(const Vec3<S>& x, std::uint32_t start, const Grow& grow,
                            const Visit& visit) const noexcept {
-    return closest_among(x, start, grow, visit,
-                         [this](const Cull& cull, const float& limit, const auto& meet) {
-                           this->walk(
-                               cull, limit, [](std::uint32_t, std::size_t, float) { return true; }, meet);
-                         });
-  }
-
-  /// The same of `start` and the triangles that over(cull, limit, meet) gives to meet(); `limit` falls meanwhile.
-  template <class Grow, class Visit, class Over>
-  Nearest closest_among(const Vec3<S>& x, std::uint32_t start, const Grow& grow, const Visit& visit,
-                        const Over& over) const noexcept {
     Nearest best = on_triangle(x, start);
     if (!is_finite(best.distance2)) return best;
     const Cull cull = this->cull(x);
     S bound = grow(best.distance2);
     float limit = cull.limit(bound);
-    over(cull, limit, [&](std::uint32_t triangle) {
-      const Nearest here = on_triangle(x, triangle);
-      if (here.distance2 > bound) return;
-      visit(here);
-      if (!(here.distance2 < best.distance2)) return;
-      best = here;
-      bound = grow(best.distance2);
-      limit = cull.limit(bound);
-    });
+    walk(
+        cull, limit, [](std::uint32_t, std::size_t, float) { return true; },
+        [&](std::uint32_t triangle) {
+          const Nearest here = on_triangle(x, triangle);
+          if (here.distance2 > bound) return;
+          visit(here);
+          if (!(here.distance2 < best.distance2)) return;
+          best = here;
+          bound = grow(best.distance2);
+          limit = cull.limit(bound);
+        });
     return best;
   }
 
@@ -118,16 +109,18 @@ class TriangleBvh {
   struct Cull {
     std::array<float, 3> x;
     S slack;  // [m], more than the rounding of a distance to a box; < 0: too far for float, look at everything
+    static constexpr S widened = S(1.000002L);  // of a square, in float
     /// What a squared distance to a box must not exceed for the box to hold something at d2 or nearer.
     [[nodiscard]] float limit(S d2) const noexcept {
       if (slack < S(0)) return (std::numeric_limits<float>::max)();
       const S d = std::sqrt(d2) + slack;
-      return static_cast<float>((std::min)(d * d * S(1.000002L), S(1e38L)));
+      return static_cast<float>((std::min)(d * d * widened, S(1e38L)));
     }
   };
-  [[nodiscard]] Cull cull(const Vec3<S>& x) const noexcept {
+  /// With a slack that is enough for points within `spread` [m] of x.
+  [[nodiscard]] Cull cull(const Vec3<S>& x, S spread = S(0)) const noexcept {
     const Vec3<S> e = x - origin_;
-    const S size = e.cwiseAbs().maxCoeff();
+    const S size = e.cwiseAbs().maxCoeff() + spread;
     if (!(size < S(1e15L))) return {{0, 0, 0}, S(-1)};
     return {{static_cast<float>(e.x()), static_cast<float>(e.y()), static_cast<float>(e.z())},
             S(4) * S(std::numeric_limits<float>::epsilon()) * (size + reach_)};

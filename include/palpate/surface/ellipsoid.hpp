@@ -194,17 +194,24 @@ class Ellipsoid {
     Lanes qx = zx * zx, qy = zy * zy, qz = zz * zz, G = qx + qy + qz, f = G - S(1);
     const Lanes within = detail::one_if_positive<Lanes, S>(-f, S(1));
     const bool usable = is_finite(S(G.sum())) && S(G.minCoeff()) > S(0.25);
-    // sqrt(G) - 1 by its continued fraction, and with one division together with 1 / H.
-    const Lanes h = qx * j.x() + qy * j.y() + qz * j.z(), below = S(16) + f * (S(12) + f),
-                per = (h * below).inverse();
-    Lanes s = step<Lanes>(G, f * (S(8) + S(4) * f) * (h * per), below * per, qx * (j.x() * j.x()),
+    // 1 / H, and sqrt(G) - 1 by its continued fraction: by one division, but of a single point, which waits for results and
+    // not for the divider.
+    const Lanes h = qx * j.x() + qy * j.y() + qz * j.z(), below = S(16) + f * (S(12) + f);
+    Lanes per_h, per_below;
+    if constexpr (N == 1) {
+      per_h = h.inverse(), per_below = below.inverse();
+    } else {
+      const Lanes per = (h * below).inverse();
+      per_h = below * per, per_below = h * per;
+    }
+    Lanes s = step<Lanes>(G, f * (S(8) + S(4) * f) * per_below, per_h, qx * (j.x() * j.x()),
                           qy * (j.y() * j.y()), qz * (j.z() * j.z()), Lanes::Constant(j.x()),
                           Lanes::Constant(j.y()), Lanes::Constant(j.z()));
     bool settled = false;
     for (int k = 0; k < 3 && !settled; ++k) {
       const Lanes dx = S(1) + s * j.x(), dy = S(1) + s * j.y(), dz = S(1) + s * j.z();
       Lanes vx, vy, vz;
-      if constexpr (N == 1) {  // waits for results, not for the divider
+      if constexpr (N == 1) {
         vx = dx.inverse(), vy = dy.inverse(), vz = dz.inverse();
       } else {
         const Lanes dyz = dy * dz, v = (dx * dyz).inverse(), vdx = v * dx;
@@ -218,18 +225,20 @@ class Ellipsoid {
       const Lanes t = f * (S(0.5) - f * (S(0.125) - f * (S(0.0625) - f * S(0.0390625))));
       const Lanes change = step<Lanes>(G, t, (hx + hy + hz).inverse(), hx * ux, hy * uy, hz * uz, ux, uy, uz);
       const Lanes ex = ux * change, ey = uy * change, ez = uz * change;
-      qx = px * (S(1) - ex * (S(1) - ex * (S(1) - ex)));
-      qy = py * (S(1) - ey * (S(1) - ey * (S(1) - ey)));
-      qz = pz * (S(1) - ez * (S(1) - ez * (S(1) - ez)));
+      // 1 - e + e^2 - e^3
+      const Lanes ex2 = ex * ex, ey2 = ey * ey, ez2 = ez * ez;
+      qx = px - px * ex, qy = py - py * ey, qz = pz - pz * ez;
+      qx += qx * ex2, qy += qy * ey2, qz += qz * ez2;
       s += change;
       // |q| may be 1 by chance before the step is small enough for its series: their next terms count too.
-      const Lanes e = ex * ex + ey * ey + ez * ez;
+      const Lanes e = ex2 + ey2 + ez2;
       const Lanes wrong = ((qx * qx + qy * qy + qz * qz - S(1)).abs() + e * e) * within;
       settled = usable && is_finite(S(wrong.sum())) && S(wrong.maxCoeff()) <= tolerance &&
                 S((s * within).minCoeff()) > S(-0.75);
     }
     qx *= slope_.x(), qy *= slope_.y(), qz *= slope_.z();
-    const Lanes m = (qx * qx + qy * qy + qz * qz).sqrt(), r = within * m.inverse();
+    // The root and the division side by side.
+    const Lanes m2 = qx * qx + qy * qy + qz * qz, m = m2.sqrt(), r = within * (m * m2.inverse());
     detail::store((s * within) * (m * -min_), depth);
     detail::store(qx * r, nx);
     detail::store(qy * r, ny);
@@ -244,7 +253,8 @@ class Ellipsoid {
                                              const V& kz, const V& ux, const V& uy, const V& uz) noexcept {
     const V g = G * r, k = (kx + ky + kz) * r * g, l = ((kx * ux + ky * uy + kz * uz) * r) * (g * g);
     const V e = S(1) - k;  // 0 for a sphere, as is 1 - l
-    return (g * t) * (S(1) + t * (t * (S(4.5) * e * (e - S(1)) + S(2) * (S(1) - l)) - S(1.5) * e));
+    // In short chains.
+    return (g * t) * ((S(1) - (S(1.5) * t) * e) + (t * t) * (S(4.5) * (e * e - e) + (S(2) - S(2) * l)));
   }
 
   // Closest point of r, relative to the centre; |r| below 1e4 a_max / epsilon.

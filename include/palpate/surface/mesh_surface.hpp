@@ -7,7 +7,7 @@
 #include <palpate/surface/crease_normals.hpp>
 #include <palpate/surface/distance_grid.hpp>
 #include <palpate/surface/near_blend.hpp>
-#include <palpate/surface/near_triangles.hpp>
+#include <palpate/surface/near_lanes.hpp>
 #include <palpate/surface/shape_tools.hpp>
 #include <palpate/surface/triangle_mesh.hpp>
 
@@ -102,37 +102,56 @@ class MeshSurface {
   [[nodiscard]] Penetration<S> penetration(const Vec3<S>& x) const noexcept {
     std::uint32_t start;
     if (!may_be_inside(x, start)) return {S(0), Vec3<S>::Zero()};
-    return penetration(x, bvh_, start);
+    Seen seen;
+    const Nearest near = blend_.search(bvh_, x, start, seen);
+    const S d = -distance(x, near);
+    if (!(d > S(0))) return {S(0), Vec3<S>::Zero()};
+    return {d, normals_.patches == 1 ? patch_direction(x, near, d, seen) : direction(x, near, d)};
   }
 
   /// The same for `lane_count` points; where they are close together, by one walk of the tree.
   void penetration(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
+    PointLanes<S> points = x;
     std::array<bool, lane_count> open;
     Vec3<S> low = upper_, high = lower_;
-    std::uint32_t start = 0;
     for (std::size_t i = 0; i < lane_count; ++i) {
       const Vec3<S> p(x.x[i], x.y[i], x.z[i]);
-      open[i] = may_be_inside(p, start);
+      open[i] = within(p);
       if (open[i]) low = low.cwiseMin(p), high = high.cwiseMax(p);
       in.set(i, {S(0), Vec3<S>::Zero()});
     }
     if (!(low.array() <= high.array()).all()) return;  // none
     const Vec3<S> middle = low + (high - low) / S(2);
     const S spread = (high - low).norm() / S(2);
-    const Nearest centre = bvh_.closest(middle, start);
+    const auto bounds = grid_.at(middle);
+    if (bounds.lower > spread) return;
     // No point is farther from the mesh than the middle is and its own distance from there.
-    const S radius = std::sqrt(blend_.band(std::sqrt(centre.distance2) + spread)) + spread;
-    const detail::NearTriangles<S> around(bvh_, middle, radius);
-    Vec3<S> before = Vec3<S>::Constant(std::numeric_limits<S>::infinity());
-    Penetration<S> one{S(0), Vec3<S>::Zero()};
+    const S far = std::sqrt(bvh_.on_triangle(middle, bounds.triangle).distance2) + spread;
+    const detail::NearTriangles<S> around(bvh_, middle, std::sqrt(blend_.band(far)) + spread);
+    const auto one_by_one = [&] {
+      for (std::size_t i = 0; i < lane_count; ++i)
+        if (open[i]) in.set(i, penetration(Vec3<S>(x.x[i], x.y[i], x.z[i])));
+    };
+    if (!around.complete()) return one_by_one();
+    for (std::size_t i = 0; i < lane_count; ++i)
+      if (!open[i]) points.x[i] = middle.x(), points.y[i] = middle.y(), points.z[i] = middle.z();
+    const detail::NearLanes<S> lanes(bvh_, blend_, bvh_.cull(middle, spread), points, around);
+    if (!lanes.complete()) return one_by_one();
+    std::array<detail::LaneArray<S>, 3> mean;
+    if (normals_.patches == 1)
+      lanes.mean(
+          blend_,
+          [this](std::uint32_t triangle, std::uint32_t corner) -> const Vec3<S>& {
+            return normals_.normal[normals_.corner[3 * triangle + corner]];
+          },
+          mean);
     for (std::size_t i = 0; i < lane_count; ++i) {
-      if (!open[i]) continue;
-      const Vec3<S> p(x.x[i], x.y[i], x.z[i]);
-      if (p != before) {  // lanes without a point of their own repeat the last one
-        one = around.complete() ? penetration(p, around, centre.triangle) : penetration(p);
-        before = p;
-      }
-      in.set(i, one);
+      const Nearest near = lanes.nearest(i);
+      if (!open[i] || !(lanes.along(i, pseudonormal(near)) < S(0))) continue;
+      const auto k = static_cast<Eigen::Index>(i);
+      const S d = lanes.distance()[k];
+      in.set(i, {d, normals_.patches == 1 ? Vec3<S>(mean[0][k], mean[1][k], mean[2][k])
+                                          : direction(Vec3<S>(x.x[i], x.y[i], x.z[i]), near, d)});
     }
   }
 
@@ -204,17 +223,6 @@ class MeshSurface {
     const auto bounds = grid_.at(x);
     start = bounds.triangle;
     return !(bounds.lower > S(0));
-  }
-
-  /// Penetration of x by a search in `tree`, a TriangleBvh or NearTriangles, from the triangle `start`.
-  template <class Tree>
-  [[nodiscard]] Penetration<S> penetration(const Vec3<S>& x, const Tree& tree,
-                                           std::uint32_t start) const noexcept {
-    Seen seen;
-    const Nearest near = blend_.search(tree, x, start, seen);
-    const S d = -distance(x, near);
-    if (!(d > S(0))) return {S(0), Vec3<S>::Zero()};
-    return {d, normals_.patches == 1 ? patch_direction(x, near, d, seen) : direction(x, near, d)};
   }
 
   /// Interpolated normal at a point of the mesh.

@@ -40,9 +40,14 @@ class NearBlend {
     return radius * radius;
   }
 
-  /// The closest point of the mesh, and in `seen` what the mean needs. `tree`: a TriangleBvh or NearTriangles.
-  template <class Tree>
-  [[nodiscard]] Nearest search(const Tree& tree, const Vec3<S>& x, std::uint32_t start,
+  /// (1 + e) d of many.
+  template <class Lanes>
+  [[nodiscard]] Lanes radii(const Lanes& d) const noexcept {
+    return (S(1) + (edge_ / S(4) / d.max((std::numeric_limits<S>::min)())).min(S(0.5L)).square()) * d;
+  }
+
+  /// The closest point of the mesh, and in `seen` what the mean needs.
+  [[nodiscard]] Nearest search(const TriangleBvh<S>& tree, const Vec3<S>& x, std::uint32_t start,
                                Seen<S>& seen) const noexcept {
     return tree.closest_and_near(
         x, start, [this](S d2) { return band(std::sqrt(d2)); }, [&seen](const Nearest& n) { seen.add(n); });

@@ -7,25 +7,28 @@
 
 namespace palpate::detail {
 
-/// Up to 64 triangles of a tree with their boxes.
+/// Up to 256 triangles of a tree with their boxes.
 template <Real S>
 class NearTriangles {
  public:
-  using Nearest = typename TriangleBvh<S>::Nearest;
-
   /// Those that may be within `radius` [m] of x. `complete()` is false where there are more.
-  NearTriangles(const TriangleBvh<S>& tree, const Vec3<S>& x, S radius) noexcept : tree_(tree) {
+  NearTriangles(const TriangleBvh<S>& tree, const Vec3<S>& x, S radius) noexcept {
     const auto nodes = tree.nodes();
     const auto cull = tree.cull(x);
-    float limit = cull.limit(radius * radius);
+    float limit = cull.limit(radius * radius), least = (std::numeric_limits<float>::max)();
     tree.walk(
         cull, limit,
-        [&](std::uint32_t n, std::size_t child, float) {
-          if (nodes[n].leaf == 0) return true;
-          if (count_ < capacity)
-            copy(nodes[n], child, count_);
-          else
+        [&](std::uint32_t n, std::size_t child, float away) {
+          const BvhNode& node = nodes[n];
+          if (node.leaf == 0) return true;
+          if (count_ < capacity) {
+            if (away < least) least = away, nearest_ = count_;
+            box_[count_] = {{node.low[0][child], node.low[1][child], node.low[2][child]},
+                            {node.high[0][child], node.high[1][child], node.high[2][child]},
+                            node.child[child]};
+          } else {
             limit = -1.0f;  // ends the walk
+          }
           ++count_;
           return false;
         },
@@ -33,40 +36,41 @@ class NearTriangles {
   }
 
   [[nodiscard]] bool complete() const noexcept { return count_ <= capacity; }
+  /// The one with the nearest box.
+  [[nodiscard]] std::uint32_t nearest() const noexcept { return box_[nearest_].triangle; }
 
-  /// As TriangleBvh::closest_and_near, of these triangles. Precondition: complete().
-  template <class Grow, class Visit>
-  Nearest closest_and_near(const Vec3<S>& x, std::uint32_t start, const Grow& grow,
-                           const Visit& visit) const noexcept {
-    return tree_.closest_among(
-        x, start, grow, visit,
-        [this](const typename TriangleBvh<S>::Cull& cull, const float& limit, const auto& meet) {
-          for (std::size_t first = 0; first < count_; first += width) {
-            const BvhNode& node = nodes_[first / width];
-            std::array<float, width> d2;
-            node.distances(cull.x, d2);
-            for (std::size_t i = 0; i < width && first + i < count_; ++i)
-              if (d2[i] <= limit) meet(node.child[i]);
-          }
-        });
+  /// Calls visit(triangle) for the others whose box is near one of many points: within its `limit` (squared, from Cull).
+  /// Coordinates as in Cull. Precondition: complete().
+  template <class Visit>
+  void for_each_near(const std::array<std::array<float, lane_count>, 3>& x,
+                     const std::array<float, lane_count>& limit, const Visit& visit) const noexcept {
+    for (std::size_t t = 0; t < count_; ++t) {
+      if (t == nearest_) continue;
+      const Box& box = box_[t];
+      Float4 least = four((std::numeric_limits<float>::max)());
+      for (std::size_t i = 0; i < lane_count; i += entries<WideRegister>) {
+        WideRegister d2 = -load_vector<WideRegister>(&limit[i]);
+        for (std::size_t k = 0; k < 3; ++k) {
+          const WideRegister at = load_vector<WideRegister>(&x[k][i]), below = box.low[k] - at,
+                             above = at - box.high[k], away = below > above ? below : above;
+          const WideRegister out = away > 0.0f ? away : WideRegister{};
+          d2 += out * out;
+        }
+        take_least(least, d2);
+      }
+      if (least_of(least) <= 0.0f) visit(box.triangle);
+    }
   }
 
  private:
-  static constexpr std::size_t width = BvhNode::width, capacity = 8 * width;
+  static constexpr std::size_t capacity = 256;
+  struct Box {
+    std::array<float, 3> low, high;
+    std::uint32_t triangle;
+  };
 
-  void copy(const BvhNode& from, std::size_t child, std::size_t to) noexcept {
-    BvhNode& node = nodes_[to / width];
-    const std::size_t i = to % width;
-    for (std::size_t k = 0; k < 3; ++k) {
-      node.low[k][i] = from.low[k][child];
-      node.high[k][i] = from.high[k][child];
-    }
-    node.child[i] = from.child[child];
-  }
-
-  const TriangleBvh<S>& tree_;
-  std::array<BvhNode, capacity / width> nodes_;  // only the first count_ boxes are set
-  std::size_t count_ = 0;
+  std::array<Box, capacity> box_;  // only the first count_ are set
+  std::size_t count_ = 0, nearest_ = 0;
 };
 
 }  // namespace palpate::detail

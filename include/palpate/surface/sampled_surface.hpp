@@ -4,6 +4,7 @@
 /// @file  Any body's depth from samples on a grid: a few dozen instructions per point, whatever the body.
 
 #include <palpate/core/error.hpp>
+#include <palpate/core/float_vector.hpp>
 #include <palpate/surface/concept.hpp>
 
 #include <algorithm>
@@ -52,6 +53,7 @@ class SampledSurface {
 
   SampledSurface(B body, const Params& params) : body_(std::move(body)), w_(params.spacing) {
     require_positive(w_, "SampledSurface", "spacing [m] must be > 0");
+    per_w_ = S(1) / w_;
     const Vec3<S> extent = body_.upper() - body_.lower();
     S nodes = S(1);
     for (int k = 0; k < 3; ++k) {
@@ -61,9 +63,12 @@ class SampledSurface {
       if (!(nodes <= S(5e7L)))
         fail("SampledSurface", "spacing [m] asks for more than 50 million nodes", static_cast<double>(w_));
       blocks_[static_cast<std::size_t>(k)] = static_cast<std::size_t>(n);
+      middle_[static_cast<std::size_t>(k)] = S(2) * n - S(1);
     }
     const Vec3<S> blocks(static_cast<S>(blocks_[0]), static_cast<S>(blocks_[1]), static_cast<S>(blocks_[2]));
     origin_ = body_.lower() + extent / S(2) - (S(2) * blocks - Vec3<S>::Constant(S(0.5L))) * w_;
+    row_ = 4 * blocks_[0];
+    layer_ = row_ * 4 * blocks_[1];
     sample();
   }
 
@@ -72,30 +77,51 @@ class SampledSurface {
   [[nodiscard]] Penetration<S> penetration(const Vec3<S>& x) const noexcept {
     const Penetration<S> none{S(0), Vec3<S>::Zero()};
     std::array<std::size_t, 3> node;
-    Vec3<S> t;
+    std::array<float, 3> t;
     if (!locate(x, node, t)) return none;
-    const std::size_t row = 4 * blocks_[0], layer = row * 4 * blocks_[1];
-    const float* at = &field_[(node[2] - 1) * layer + (node[1] - 1) * row + node[0] - 1];
-    if (at[layer + row + 1] > clear_) return none;
-    const Spline wx(t.x()), wy(t.y()), wz(t.z());
-    // Sums of three rows and of three layers, four nodes along x at a time; written out, because a loop would keep
-    // them in memory.
-    const auto rows = [&](const float* from, const std::array<float, 3>& w) -> Lanes {
-      using In = Eigen::Map<const Lanes, Eigen::Unaligned>;
-      return w[0] * In(from) + w[1] * In(from + row) + w[2] * In(from + 2 * row);
-    };
-    const Lanes low = rows(at, wy.value), mid = rows(at + layer, wy.value),
-                high = rows(at + 2 * layer, wy.value);
-    const Lanes value = wz.value[0] * low + wz.value[1] * mid + wz.value[2] * high;
-    const float d = sum(value, wx.value);
+    const float* const at = &field_[index(node)];
+    if (*at > clear_) return none;
+    const Spline<float> wx(t[0]);
+    const Rows rows = rows_around(at, Spline<float>(t[1]), Spline<float>(t[2]));
+    const float d = wx.sum(rows.value);
     if (!(d < 0.0f)) return none;
-    const Lanes along_z = wz.slope[0] * low + wz.slope[1] * mid + wz.slope[2] * high;
-    const Lanes along_y = wz.value[0] * rows(at, wy.slope) + wz.value[1] * rows(at + layer, wy.slope) +
-                          wz.value[2] * rows(at + 2 * layer, wy.slope);
-    const S per = S(1) / w_;
     return {-static_cast<S>(d),
-            Vec3<S>(per * static_cast<S>(sum(value, wx.slope)), per * static_cast<S>(sum(along_y, wx.value)),
-                    per * static_cast<S>(sum(along_z, wx.value)))};
+            per_w_ * Vec3<S>(static_cast<S>(wx.slope_sum(rows.value)), static_cast<S>(wx.sum(rows.along_y)),
+                             static_cast<S>(wx.sum(rows.along_z)))};
+  }
+
+  /// The same for `lane_count` points.
+  void penetration(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
+    using Lanes = detail::LaneArray<S>;
+    using Offsets = detail::LaneArray<float>;
+    const std::array<Lanes, 3> u{(detail::lane_array(x.x) - origin_.x()) * per_w_,
+                                 (detail::lane_array(x.y) - origin_.y()) * per_w_,
+                                 (detail::lane_array(x.z) - origin_.z()) * per_w_};
+    const std::array<Lanes, 3> node{(u[0] + S(0.5L)).floor(), (u[1] + S(0.5L)).floor(),
+                                    (u[2] + S(0.5L)).floor()};
+    const Spline<Offsets> wx((u[0] - node[0]).template cast<float>()),
+        wy((u[1] - node[1]).template cast<float>()), wz((u[2] - node[2]).template cast<float>());
+    // Whole numbers below 2^53.
+    const detail::LaneArray<double> at = node[0].template cast<double>() +
+                                         static_cast<double>(row_) * node[1].template cast<double>() +
+                                         static_cast<double>(layer_) * node[2].template cast<double>();
+    std::array<Rows, lane_count> rows;
+    for (std::size_t i = 0; i < lane_count; ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      rows[i] = Rows{};
+      if (!has_cell(Vec3<S>(u[0][k], u[1][k], u[2][k]))) continue;
+      const float* const here = &field_[static_cast<std::size_t>(at[k])];
+      if (*here > clear_) continue;
+      rows[i] = rows_around(here, wy.lane(k), wz.lane(k));
+    }
+    for (std::size_t i = 0; i < lane_count; i += 4) {
+      const Spline<detail::Float4> w = wx.four(i);
+      const auto value = columns(rows, i, &Rows::value);
+      put(i, detail::larger(-w.sum(value), detail::four(0.0f)), S(1), in.depth);
+      put(i, w.slope_sum(value), per_w_, in.gradient_x);
+      put(i, w.sum(columns(rows, i, &Rows::along_y)), per_w_, in.gradient_y);
+      put(i, w.sum(columns(rows, i, &Rows::along_z)), per_w_, in.gradient_z);
+    }
   }
 
   /// True only if penetration() is 0 all over the ball (c, r); false when anything is not finite or r < 0.
@@ -106,10 +132,9 @@ class SampledSurface {
     // One coordinate first, so that nothing overflows.
     if (away.maxCoeff() > apart || away.squaredNorm() > apart * apart) return true;
     std::array<std::size_t, 3> node;
-    Vec3<S> t;
+    std::array<float, 3> t;
     if (!locate(c, node, t)) return false;
-    const std::size_t row = 4 * blocks_[0];
-    const S here = static_cast<S>(field_[(node[2] * 4 * blocks_[1] + node[1]) * row + node[0]]);
+    const S here = static_cast<S>(field_[index(node)]);
     if (here - margin * w_ > r) return true;
     const std::array<std::size_t, 3> b{node[0] / 4, node[1] / 4, node[2] / 4};
     const S block = static_cast<S>(block_[(b[2] * blocks_[1] + b[1]) * blocks_[0] + b[0]]);
@@ -125,19 +150,73 @@ class SampledSurface {
   // of d: a coefficient of more than this has no contact in its cell.
   static constexpr S margin = S(3.25L);
 
-  using Lanes = Eigen::Array<float, 4, 1>;
-
   /// The three quadratic B-splines that are not 0 at an offset t in [-1/2, 1/2] from a node, and their derivatives.
+  template <class T>
   struct Spline {
-    std::array<float, 3> value, slope;
-    explicit Spline(S t) noexcept {
-      const float u = static_cast<float>(t), a = 0.5f - u, b = 0.5f + u;
-      value = {0.5f * a * a, 0.75f - u * u, 0.5f * b * b};
-      slope = {-a, -2.0f * u, b};
+    std::array<T, 3> value, slope;
+    Spline() = default;
+    PALPATE_INLINE explicit Spline(const T& t) noexcept {
+      const T a = 0.5f - t, b = 0.5f + t;
+      value = {0.5f * a * a, 0.75f - t * t, 0.5f * b * b};
+      slope = {-a, -2.0f * t, b};
+    }
+    /// Of one or four of many.
+    [[nodiscard]] PALPATE_INLINE Spline<float> lane(Eigen::Index i) const noexcept {
+      Spline<float> w;
+      for (std::size_t k = 0; k < 3; ++k) w.value[k] = value[k][i], w.slope[k] = slope[k][i];
+      return w;
+    }
+    [[nodiscard]] PALPATE_INLINE Spline<detail::Float4> four(std::size_t i) const noexcept {
+      Spline<detail::Float4> w;
+      for (std::size_t k = 0; k < 3; ++k) {
+        w.value[k] = detail::load_vector<detail::Float4>(value[k].data() + i);
+        w.slope[k] = detail::load_vector<detail::Float4>(slope[k].data() + i);
+      }
+      return w;
+    }
+    /// Over three nodes.
+    template <class V>
+    [[nodiscard]] PALPATE_INLINE T sum(const V& v) const noexcept {
+      return v[0] * value[0] + v[1] * value[1] + v[2] * value[2];
+    }
+    template <class V>
+    [[nodiscard]] PALPATE_INLINE T slope_sum(const V& v) const noexcept {
+      return v[0] * slope[0] + v[1] * slope[1] + v[2] * slope[2];
     }
   };
-  [[nodiscard]] static float sum(const Lanes& v, const std::array<float, 3>& w) noexcept {
-    return v[0] * w[0] + v[1] * w[1] + v[2] * w[2];
+
+  struct
+      Rows {  // sums over y and z of the nodes around a point, by nodes along x, of which the first three count
+    detail::Float4 value, along_y, along_z;  // field, and derivatives by offsets
+  };
+  [[nodiscard]] PALPATE_INLINE Rows rows_around(const float* node, const Spline<float>& wy,
+                                                const Spline<float>& wz) const noexcept {
+    Rows rows{};
+    const float* from = node - layer_ - row_ - 1;
+    for (std::size_t k = 0; k < 3; ++k, from += layer_) {
+      const std::array<detail::Float4, 3> in{detail::load_vector<detail::Float4>(from),
+                                             detail::load_vector<detail::Float4>(from + row_),
+                                             detail::load_vector<detail::Float4>(from + 2 * row_)};
+      const detail::Float4 value = wy.value[0] * in[0] + wy.value[1] * in[1] + wy.value[2] * in[2];
+      rows.value += wz.value[k] * value;
+      rows.along_y += wz.value[k] * (wy.slope[0] * in[0] + wy.slope[1] * in[1] + wy.slope[2] * in[2]);
+      rows.along_z += wz.slope[k] * value;
+    }
+    return rows;
+  }
+  /// A sum of four points by nodes instead of by points.
+  [[nodiscard]] PALPATE_INLINE static std::array<detail::Float4, 3> columns(
+      const std::array<Rows, lane_count>& rows, std::size_t i, detail::Float4 Rows::*of) noexcept {
+    detail::Float4 a = rows[i].*of, b = rows[i + 1].*of, c = rows[i + 2].*of, d = rows[i + 3].*of;
+    detail::transpose(a, b, c, d);
+    return {a, b, c};
+  }
+  PALPATE_INLINE static void put(std::size_t i, detail::Float4 v, S factor,
+                                 std::array<S, lane_count>& out) noexcept {
+    std::array<float, 4> four;
+    detail::store_vector(four.data(), v);
+    Eigen::Map<Eigen::Array<S, 4, 1>>(out.data() + i) =
+        Eigen::Map<const Eigen::Array<float, 4, 1>>(four.data()).template cast<S>() * factor;
   }
 
   /// Middle of a block of 4 x 4 x 4 nodes.
@@ -147,23 +226,31 @@ class SampledSurface {
                                   S(4) * static_cast<S>(b[2]) + S(1.5L));
   }
 
+  /// Is the point at u, in units of w from the first node, far enough from the rim? False if not finite.
+  [[nodiscard]] PALPATE_INLINE bool has_cell(const Vec3<S>& u) const noexcept {
+    return is_within(u[0] - middle_[0], middle_[0] - S(0.5L)) &&
+           is_within(u[1] - middle_[1], middle_[1] - S(0.5L)) &&
+           is_within(u[2] - middle_[2], middle_[2] - S(0.5L));
+  }
   /// Nearest node and the offset from it in units of w; false near and past the rim.
-  [[nodiscard]] bool locate(const Vec3<S>& x, std::array<std::size_t, 3>& node, Vec3<S>& t) const noexcept {
-    if (!is_finite(x)) return false;
-    const Vec3<S> u = (x - origin_) / w_;
+  [[nodiscard]] bool locate(const Vec3<S>& x, std::array<std::size_t, 3>& node,
+                            std::array<float, 3>& t) const noexcept {
+    const Vec3<S> u = (x - origin_) * per_w_;
+    if (!has_cell(u)) return false;
     for (std::size_t k = 0; k < 3; ++k) {
       const S at = u[static_cast<int>(k)];
-      if (!(at >= S(0.5L) && at < static_cast<S>(4 * blocks_[k]) - S(2.5L))) return false;
       node[k] = static_cast<std::size_t>(at + S(0.5L));
-      t[static_cast<int>(k)] = at - static_cast<S>(node[k]);
+      t[k] = static_cast<float>(at - static_cast<S>(node[k]));
     }
     return true;
+  }
+  [[nodiscard]] std::size_t index(const std::array<std::size_t, 3>& node) const noexcept {
+    return node[2] * layer_ + node[1] * row_ + node[0];
   }
 
   void sample() {
     const std::array<std::size_t, 3> n{4 * blocks_[0], 4 * blocks_[1], 4 * blocks_[2]};
-    const std::size_t row = n[0], layer = n[0] * n[1];
-    std::vector<float> f(layer * n[2], static_cast<float>(S(8) * w_));
+    std::vector<float> f(layer_ * n[2], static_cast<float>(S(8) * w_));
     for (std::size_t c = 0; c < blocks_[2]; ++c) {
       for (std::size_t b = 0; b < blocks_[1]; ++b) {
         for (std::size_t a = 0; a < blocks_[0]; ++a) {
@@ -175,8 +262,7 @@ class SampledSurface {
             const std::size_t x = 4 * a + i % 4, y = 4 * b + i / 4 % 4, z = 4 * c + i / 16;
             const Vec3<S> at =
                 origin_ + w_ * Vec3<S>(static_cast<S>(x), static_cast<S>(y), static_cast<S>(z));
-            f[z * layer + y * row + x] =
-                static_cast<float>((std::min)(body_.closest(at).distance, S(8) * w_));
+            f[index({x, y, z})] = static_cast<float>((std::min)(body_.closest(at).distance, S(8) * w_));
           }
         }
       }
@@ -187,9 +273,10 @@ class SampledSurface {
     for (std::size_t z = 1; z + 1 < n[2]; ++z) {
       for (std::size_t y = 1; y + 1 < n[1]; ++y) {
         for (std::size_t x = 1; x + 1 < n[0]; ++x) {
-          const std::size_t i = z * layer + y * row + x;
-          field_[i] = f[i] * 1.75f -
-                      (f[i - 1] + f[i + 1] + f[i - row] + f[i + row] + f[i - layer] + f[i + layer]) / 8.0f;
+          const std::size_t i = index({x, y, z});
+          field_[i] =
+              f[i] * 1.75f -
+              (f[i - 1] + f[i + 1] + f[i - row_] + f[i + row_] + f[i - layer_] + f[i + layer_]) / 8.0f;
         }
       }
     }
@@ -197,9 +284,11 @@ class SampledSurface {
   }
 
   B body_;
-  S w_;
+  S w_, per_w_;
   Vec3<S> origin_;                     // the first node
   std::array<std::size_t, 3> blocks_;  // along each axis
+  std::array<S, 3> middle_;            // of the grid, in units of w from the first node
+  std::size_t row_, layer_;            // nodes in each
   std::vector<float> field_;           // c, x fastest
   std::vector<float> block_;           // d at the middle of each block
   float clear_ = 0;                    // margin w

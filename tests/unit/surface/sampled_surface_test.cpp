@@ -20,6 +20,7 @@ namespace {
 
 using V = Vec3<double>;
 static_assert(ContactSurface<SampledSurface<MeshSurface<float>>>);
+static_assert(HasPenetrationLanes<SampledSurface<MeshSurface<float>>>);
 static_assert(ContactSurface<SampledSurface<Ellipsoid<double>>>);
 static_assert(ContactSurface<SampledSurface<Superellipsoid<double>>>);
 
@@ -95,6 +96,48 @@ TEST_CASE("sampled surface: the gradient is the depth's derivative, and turns wi
     }
   }
   CHECK(inside > 500);
+}
+
+TEST_CASE_TEMPLATE("sampled surface: many points at once are as one by one", S, float, double) {
+  const MeshSurface<S> mesh{TriangleMesh<S>(test::blob<S>(500))};
+  const SampledSurface<MeshSurface<S>> body(mesh, {.spacing = S(1.5e-3)});
+  const Vec3<S> middle = (mesh.lower() + mesh.upper()) / S(2), half = (mesh.upper() - mesh.lower()) / S(2);
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<S> uniform(S(-1), S(1));
+  int inside = 0, outside = 0;
+  for (int k = 0; k < 500; ++k) {
+    // Within the body, about its box, and past the grid's rim.
+    const S reach = k % 3 == 0 ? S(0.8) : k % 3 == 1 ? S(1.05) : S(2);
+    PointLanes<S> x;
+    for (std::size_t i = 0; i < lane_count; ++i) {
+      x.x[i] = middle.x() + reach * half.x() * uniform(random);
+      x.y[i] = middle.y() + reach * half.y() * uniform(random);
+      x.z[i] = middle.z() + reach * half.z() * uniform(random);
+    }
+    x.y[3] = std::numeric_limits<S>::quiet_NaN();
+    x.z[8] = std::numeric_limits<S>::infinity();
+    x.x[11] = (std::numeric_limits<S>::max)();
+    PenetrationLanes<S> in;
+    body.penetration(x, in);
+    for (std::size_t i = 0; i < lane_count; ++i) {
+      const Penetration<S> one = body.penetration(Vec3<S>(x.x[i], x.y[i], x.z[i]));
+      // Sums of 27 samples in float, and in S = float a place rounded to a few parts in 1e5 of a spacing.
+      const double rounding = test::ulps<float>(64) * double(half.maxCoeff());
+      CHECK_ABSOLUTE(in.depth[i], one.depth, rounding);
+      if (!(one.depth > S(rounding))) {
+        ++outside;
+        continue;
+      }
+      ++inside;
+      const Vec3<S> g(in.gradient_x[i], in.gradient_y[i], in.gradient_z[i]);
+      CHECK_ABSOLUTE((g - one.gradient).norm(), 0, 4 * rounding / 1.5e-3);  // of a spline as wide as a spacing
+    }
+    CHECK(in.depth[3] == S(0));
+    CHECK(in.depth[8] == S(0));
+    CHECK(in.depth[11] == S(0));
+  }
+  CHECK(inside > 1000);
+  CHECK(outside > 1000);
 }
 
 TEST_CASE("sampled surface: separation never hides a contact and decides where it matters") {
