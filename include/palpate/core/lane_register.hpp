@@ -2,14 +2,16 @@
 #pragma once
 
 /// @file  As many floats or doubles as the widest register holds: for long formulas over many points, which Eigen's arrays keep in
-/// memory.
+/// memory. What is written for `V` also serves a single number.
 
 #include <palpate/core/float_vector.hpp>
 #include <palpate/core/scalar.hpp>
 
 #include <Eigen/Core>
 
+#include <array>
 #include <type_traits>
+#include <utility>
 
 namespace palpate::detail {
 
@@ -28,29 +30,100 @@ using LaneRegister = std::conditional_t<std::same_as<S, float>, WideRegister,
 template <Real S>
 inline constexpr std::size_t register_lanes = sizeof(LaneRegister<S>) / sizeof(S);
 
-template <Real S>
-[[nodiscard]] PALPATE_INLINE LaneRegister<S> load_register(const S* from) noexcept {
-  LaneRegister<S> x;
+/// What a comparison gives, to choose with: mask ? a : b.
+template <class V>
+using MaskOf = decltype(std::declval<V>() < std::declval<V>());
+
+/// `V`: a register of S, or S itself.
+template <class V, Real S>
+[[nodiscard]] PALPATE_INLINE V load_as(const S* from) noexcept {
+  V x;
   std::memcpy(&x, from, sizeof x);
   return x;
 }
 template <Real S>
-PALPATE_INLINE void store_register(S* to, const LaneRegister<S>& x) noexcept {
+[[nodiscard]] PALPATE_INLINE LaneRegister<S> load_register(const S* from) noexcept {
+  return load_as<LaneRegister<S>>(from);
+}
+template <class V, Real S>
+PALPATE_INLINE void store_register(S* to, const V& x) noexcept {
   std::memcpy(to, &x, sizeof x);
 }
-template <Real S>
-[[nodiscard]] PALPATE_INLINE LaneRegister<S> register_of(S x) noexcept {
-  return x - LaneRegister<S>{};
+template <class V, Real S>
+[[nodiscard]] PALPATE_INLINE V all_of(S x) noexcept {
+  return x - V{};
 }
-/// Square roots of a register of S.
-template <Real S>
-[[nodiscard]] PALPATE_INLINE LaneRegister<S> register_root(LaneRegister<S> x) noexcept {
-  using Array = Eigen::Array<S, static_cast<int>(register_lanes<S>), 1>;
-  std::array<S, register_lanes<S>> entry;
-  store_register<S>(entry.data(), x);
+
+/// f of all entries, an array's function.
+template <Real S, class V, class F>
+[[nodiscard]] PALPATE_INLINE V by_array(const V& x, const F& f) noexcept {
+  using Array = Eigen::Array<S, static_cast<int>(sizeof(V) / sizeof(S)), 1>;
+  std::array<S, sizeof(V) / sizeof(S)> entry;
+  store_register(entry.data(), x);
   Eigen::Map<Array> all(entry.data());
-  all = all.sqrt();
-  return load_register<S>(entry.data());
+  all = f(all);
+  return load_as<V>(entry.data());
+}
+template <Real S, class V>
+[[nodiscard]] PALPATE_INLINE V root_of(const V& x) noexcept {
+  return by_array<S>(x, [](const auto& a) { return a.sqrt(); });
+}
+template <Real S, class V>
+[[nodiscard]] PALPATE_INLINE V log_of(const V& x) noexcept {
+  return by_array<S>(x, [](const auto& a) { return a.log(); });
+}
+template <Real S, class V>
+[[nodiscard]] PALPATE_INLINE V exp_of(const V& x) noexcept {
+  return by_array<S>(x, [](const auto& a) { return a.exp(); });
+}
+
+template <class V>
+[[nodiscard]] PALPATE_INLINE V larger_of(const V& a, const V& b) noexcept {
+  return a > b ? a : b;
+}
+template <class V>
+[[nodiscard]] PALPATE_INLINE V absolute(const V& a) noexcept {
+  return a < V{} ? -a : a;
+}
+/// Masks that are true together, and the opposite of one.
+template <class M, class... Others>
+[[nodiscard]] PALPATE_INLINE M all_true(const M& a, const Others&... others) noexcept {
+  if constexpr (sizeof...(others) == 0)
+    return a;
+  else if constexpr (std::same_as<M, bool>)
+    return a && all_true<M>(others...);
+  else
+    return a & all_true<M>(others...);
+}
+template <class M>
+[[nodiscard]] PALPATE_INLINE M negated(const M& a) noexcept {
+  return a == 0;
+}
+
+/// is_finite() of every entry.
+template <Real S, class V>
+[[nodiscard]] PALPATE_INLINE MaskOf<V> finite(const V& x) noexcept {
+  if constexpr (std::same_as<V, S>) {
+    return is_finite(x);
+  } else {
+    using Bits = MaskOf<V>;
+    constexpr auto exponent = std::bit_cast<std::conditional_t<sizeof(S) == 4, std::int32_t, std::int64_t>>(
+        std::numeric_limits<S>::infinity());
+    return (std::bit_cast<Bits>(x) & exponent) != exponent;
+  }
+}
+/// Of a mask: is an entry true?
+template <Real S, class M>
+[[nodiscard]] PALPATE_INLINE bool any(const M& mask) noexcept {
+  if constexpr (std::same_as<M, bool>) {
+    return mask;
+  } else {
+    std::array<std::uint64_t, sizeof(M) / sizeof(std::uint64_t)> words;
+    std::memcpy(words.data(), &mask, sizeof mask);
+    std::uint64_t sum = 0;
+    for (const std::uint64_t word : words) sum |= word;
+    return sum != 0;
+  }
 }
 
 }  // namespace palpate::detail

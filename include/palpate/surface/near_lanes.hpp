@@ -56,7 +56,7 @@ class NearLanes {
     const Lanes radius = blend.radii(distance_), limit = radius.square(),
                 per = (radius - distance_).max((std::numeric_limits<S>::min)()).inverse();
     std::array<std::array<S, lane_count>, 4> sum{};
-    const R least = register_of((std::numeric_limits<S>::min)());
+    const R least = all_of<R>((std::numeric_limits<S>::min)());
     for (std::size_t f = 0; f < count_; ++f) {
       const Foot& foot = foot_[f];
       if (!((lane_array(foot.distance2) - limit).minCoeff() < S(0))) continue;
@@ -65,12 +65,11 @@ class NearLanes {
         const R u = load_register(&foot.u[i]), v = load_register(&foot.v[i]), w = load_register(&foot.w[i]);
         const R nx = u * a[0] + v * b[0] + w * c[0], ny = u * a[1] + v * b[1] + w * c[1],
                 nz = u * a[2] + v * b[2] + w * c[2];
-        const R here =
-            (load_register(radius.data() + i) - register_root<S>(load_register(&foot.distance2[i]))) *
-            load_register(per.data() + i);
+        const R here = (load_register(radius.data() + i) - root_of<S>(load_register(&foot.distance2[i]))) *
+                       load_register(per.data() + i);
         const R weight = here > S(0) ? here * here : R{};
         const R square = nx * nx + ny * ny + nz * nz,
-                scale = weight / register_root<S>(square > least ? square : least);
+                scale = weight / root_of<S>(square > least ? square : least);
         const auto add = [i](std::array<S, lane_count>& to, const R& more) {
           store_register(&to[i], R(load_register(&to[i]) + more));
         };
@@ -104,7 +103,7 @@ class NearLanes {
             d3 = ex * bx + ey * by + ez * bz, d4 = fx * bx + fy * by + fz * bz,
             d5 = ex * cx + ey * cy + ez * cz, d6 = fx * cx + fy * cy + fz * cz, d43 = d4 - d3, d56 = d5 - d6;
     const R vc = d1 * d4 - d3 * d2, vb = d5 * d2 - d1 * d6, va = d3 * d6 - d5 * d4, sum = va + vb + vc;
-    const R none{}, one = register_of(S(1));
+    const R none{}, one = all_of<R>(S(1));
     // v and w as fractions.
     const auto area = sum > none;
     R v = area ? vb : none, w = area ? vc : none, whole = area ? sum : one;
@@ -136,7 +135,7 @@ class NearLanes {
     foot.triangle = triangle;
     const auto& t = tree.triangles()[triangle];
     const Vec3<S> a = tree.vertices()[t[0]], b = tree.vertices()[t[1]], c = tree.vertices()[t[2]];
-    const R number = register_of(static_cast<S>(count_));
+    const R number = all_of<R>(static_cast<S>(count_));
     for (std::size_t i = 0; i < lane_count; i += register_lanes<S>) {
       const R x = load_register(&x_.x[i]), y = load_register(&x_.y[i]), z = load_register(&x_.z[i]);
       const auto [u, v, w] = weights(x, y, z, a, b, c);

@@ -218,21 +218,24 @@ class Superellipsoid {
   // Penetration of N points: at once, and the general way for those that are too deep for that or do not settle.
   template <int N>
   void near_surface(const S* x, const S* y, const S* z, S* depth, S* nx, S* ny, S* nz) const noexcept {
-    using In = Eigen::Map<const detail::LaneArray<S, N>>;
-    const typename detail::SuperellipsoidNear<S>::template Axes<N> r{(In(x) - p_.centre.x()).abs() / min_,
-                                                                     (In(y) - p_.centre.y()).abs() / min_,
-                                                                     (In(z) - p_.centre.z()).abs() / min_};
-    const auto near = near_.template solve<N>(r);
+    using Lanes = detail::LaneArray<S, N>;
+    using In = Eigen::Map<const Lanes>;
+    typename detail::SuperellipsoidNear<S>::template Axes<N> r;
+    Eigen::Map<Lanes>(r[0].data()) = (In(x) - p_.centre.x()).abs() / min_;
+    Eigen::Map<Lanes>(r[1].data()) = (In(y) - p_.centre.y()).abs() / min_;
+    Eigen::Map<Lanes>(r[2].data()) = (In(z) - p_.centre.z()).abs() / min_;
+    typename detail::SuperellipsoidNear<S>::template Result<N> near;
+    near_.template solve<N>(r, near);
     std::array<bool, static_cast<std::size_t>(N)> done;
     for (std::size_t k = 0; k < done.size(); ++k) {
-      const auto i = static_cast<Eigen::Index>(k);
-      const S below = near.any_near ? near.depth[i] * min_ : S(0);
-      done[k] = !near.near[k] || (near.settled[k] && below < reach_);
-      const bool inside = near.settled[k] && done[k] && below > S(0);
+      const bool settled = near.settled[k] > S(0);
+      const S below = settled ? near.depth[k] * min_ : S(0);
+      done[k] = !(near.near[k] > S(0)) || (settled && below < reach_);
+      const bool inside = settled && done[k] && below > S(0);
       depth[k] = inside ? below : S(0);
-      nx[k] = inside ? with_sign(x[k] - p_.centre.x(), near.normal[0][i]) : S(0);
-      ny[k] = inside ? with_sign(y[k] - p_.centre.y(), near.normal[1][i]) : S(0);
-      nz[k] = inside ? with_sign(z[k] - p_.centre.z(), near.normal[2][i]) : S(0);
+      nx[k] = inside ? with_sign(x[k] - p_.centre.x(), near.normal[0][k]) : S(0);
+      ny[k] = inside ? with_sign(y[k] - p_.centre.y(), near.normal[1][k]) : S(0);
+      nz[k] = inside ? with_sign(z[k] - p_.centre.z(), near.normal[2][k]) : S(0);
     }
     for (std::size_t k = 0; k < done.size(); ++k) {
       if (done[k]) continue;
