@@ -347,7 +347,7 @@ class Superellipsoid {
       const S s1 = tau.dot(f.bend.dir1) / stiff(f.bend.k1), s2 = tau.dot(f.bend.dir2) / stiff(f.bend.k2);
       Vec3<S> step = s1 * f.bend.dir1 + s2 * f.bend.dir2;
       const int halvings = tau.cwiseAbs().maxCoeff() > std::sqrt(epsilon) * scale ? 12 : 2;
-      const S slack = S(4) * epsilon * p_.axes.maxCoeff() * std::sqrt(square);  // rounding of p in the gain
+      const S slack = S(16) * epsilon * p_.axes.maxCoeff() * std::sqrt(square);  // roundings of p in the gain
       bool better = false;
       for (int halving = 0; halving < halvings && !better; ++halving, step /= S(2)) {
         const Vec3<S> z = (p + step).cwiseAbs().cwiseQuotient(p_.axes);

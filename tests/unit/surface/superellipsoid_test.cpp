@@ -40,6 +40,25 @@ TEST_CASE_TEMPLATE("superellipsoid: exponents 1 give the ellipsoid", S, float, d
   }
 }
 
+TEST_CASE("superellipsoid: the closest point is a foot to rounding, whatever the exponents") {
+  MESSAGE("seed ", seed);
+  std::mt19937_64 random(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1), exponent(0.1, 1);
+  for (int k = 0; k < 100; ++k) {
+    const Vec3<double> a(0.03, 0.02, 0.025);
+    const Superellipsoid<double> body({.axes = a, .e1 = exponent(random), .e2 = exponent(random)});
+    for (int i = 0; i < 200; ++i) {
+      const double scale = i % 3 == 0 ? 1.05 : i % 3 == 1 ? 1.5 : 20;
+      const Vec3<double> x = scale * a.cwiseProduct(Vec3<double>(uniform(random), uniform(random), uniform(random)));
+      const SurfacePoint<double> p = body.closest(x);
+      if (p.distance < -0.8 * body.reach()) continue;  // other feet are as near
+      // Where the descent ends, 4, and the rounding of a normal by powers, about 10, times the distance.
+      CHECK_ABSOLUTE(tangential<double>(x - p.position, p.normal).norm(), 0,
+                     test::ulps<double>(64) * std::fmax(0.03, x.norm()));
+    }
+  }
+}
+
 TEST_CASE_TEMPLATE("superellipsoid: between its box and its ellipsoid; flats are flat", S, float, double) {
   const Superellipsoid<S> body({.axes = Vec3<S>::Constant(S(0.02)), .e1 = S(0.1), .e2 = S(0.1)});
   CHECK(body.volume() > S(0.9) * S(64e-6));
