@@ -125,13 +125,15 @@ class MeshSurface {
     const S spread = (high - low).norm() / S(2);
     const auto bounds = grid_.at(middle);
     if (bounds.lower > spread) return;
-    // No point is farther from the mesh than the middle is and its own distance from there.
-    const S far = std::sqrt(bvh_.on_triangle(middle, bounds.triangle).distance2) + spread;
-    const detail::NearTriangles<S> around(bvh_, middle, std::sqrt(blend_.band(far)) + spread);
     const auto one_by_one = [&] {
       for (std::size_t i = 0; i < lane_count; ++i)
         if (open[i]) in.set(i, penetration(Vec3<S>(x.x[i], x.y[i], x.z[i])));
     };
+    // Farther apart they have too many triangles near them: the walk would be for nothing.
+    if (spread > S(1.5L) * edge_) return one_by_one();
+    // No point is farther from the mesh than the middle is and its own distance from there.
+    const S far = std::sqrt(bvh_.on_triangle(middle, bounds.triangle).distance2) + spread;
+    const detail::NearTriangles<S> around(bvh_, middle, std::sqrt(blend_.band(far)) + spread);
     if (!around.complete()) return one_by_one();
     for (std::size_t i = 0; i < lane_count; ++i)
       if (!open[i]) points.x[i] = middle.x(), points.y[i] = middle.y(), points.z[i] = middle.z();

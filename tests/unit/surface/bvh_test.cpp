@@ -164,8 +164,9 @@ TEST_CASE_TEMPLATE("bvh: refit equals rebuild", S, float, double) {
         // The least of the same numbers, whatever the order. A triangle's distance is worked out at two places, and rounds
         // differently where products are contracted in one of them only.
         const S distance = std::sqrt(fresh.closest(x).distance2);
-        CHECK_ABSOLUTE(std::sqrt(tree.closest(x).distance2), distance, test::ulps<S>(8) * size_of(mesh));
-        CHECK_ABSOLUTE(std::sqrt(whole.closest(x).distance2), distance, test::ulps<S>(8) * size_of(mesh));
+        const auto size = static_cast<long double>(size_of(mesh));
+        CHECK_ABSOLUTE(std::sqrt(tree.closest(x).distance2), distance, test::ulps<S>(8) * size);
+        CHECK_ABSOLUTE(std::sqrt(whole.closest(x).distance2), distance, test::ulps<S>(8) * size);
         CHECK(tree.raycast(x, Vec3<S>::UnitX()).t == fresh.raycast(x, Vec3<S>::UnitX()).t);
       }
     }

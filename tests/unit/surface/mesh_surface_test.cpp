@@ -239,7 +239,7 @@ TEST_CASE_TEMPLATE("mesh surface: many points at once are as one by one, close t
       for (std::size_t i = 0; i < lane_count; ++i) {
         const Penetration<S> one = body.penetration(Vec3<S>(x.x[i], x.y[i], x.z[i]));
         // The same formulas in another order.
-        CHECK_ABSOLUTE(in.depth[i], one.depth, test::ulps<S>(8) * size);
+        CHECK_ABSOLUTE(in.depth[i], one.depth, test::ulps<S>(8) * static_cast<long double>(size));
         const Vec3<S> g(in.gradient_x[i], in.gradient_y[i], in.gradient_z[i]);
         CHECK_ABSOLUTE((g - one.gradient).norm(), 0,
                        test::ulps<S>(64));  // of up to 64 triangles, in another order

@@ -122,15 +122,15 @@ TEST_CASE_TEMPLATE("sampled surface: many points at once are as one by one", S, 
     for (std::size_t i = 0; i < lane_count; ++i) {
       const Penetration<S> one = body.penetration(Vec3<S>(x.x[i], x.y[i], x.z[i]));
       // Sums of 27 samples in float, and in S = float a place rounded to a few parts in 1e5 of a spacing.
-      const double rounding = test::ulps<float>(64) * double(half.maxCoeff());
+      const long double rounding = test::ulps<float>(64) * static_cast<long double>(half.maxCoeff());
       CHECK_ABSOLUTE(in.depth[i], one.depth, rounding);
-      if (!(one.depth > S(rounding))) {
+      if (!(static_cast<long double>(one.depth) > rounding)) {
         ++outside;
         continue;
       }
       ++inside;
       const Vec3<S> g(in.gradient_x[i], in.gradient_y[i], in.gradient_z[i]);
-      CHECK_ABSOLUTE((g - one.gradient).norm(), 0, 4 * rounding / 1.5e-3);  // of a spline as wide as a spacing
+      CHECK_ABSOLUTE((g - one.gradient).norm(), 0, 4 * rounding / 1.5e-3L);  // of a spline as wide as a spacing
     }
     CHECK(in.depth[3] == S(0));
     CHECK(in.depth[8] == S(0));
