@@ -58,7 +58,7 @@ template <class V>
 }
 
 template <class V>
-[[nodiscard]] PALPATE_INLINE V load_vector(const float* from) noexcept {
+[[nodiscard]] PALPATE_INLINE V load_vector(const void* from) noexcept {
   V x;
   std::memcpy(&x, from, sizeof x);
   return x;

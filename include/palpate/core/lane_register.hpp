@@ -34,21 +34,11 @@ inline constexpr std::size_t register_lanes = sizeof(LaneRegister<S>) / sizeof(S
 template <class V>
 using MaskOf = decltype(std::declval<V>() < std::declval<V>());
 
-/// `V`: a register of S, or S itself.
-template <class V, Real S>
-[[nodiscard]] PALPATE_INLINE V load_as(const S* from) noexcept {
-  V x;
-  std::memcpy(&x, from, sizeof x);
-  return x;
-}
 template <Real S>
 [[nodiscard]] PALPATE_INLINE LaneRegister<S> load_register(const S* from) noexcept {
-  return load_as<LaneRegister<S>>(from);
+  return load_vector<LaneRegister<S>>(from);
 }
-template <class V, Real S>
-PALPATE_INLINE void store_register(S* to, const V& x) noexcept {
-  std::memcpy(to, &x, sizeof x);
-}
+/// x in every entry. `V`: a register of S, or S itself.
 template <class V, Real S>
 [[nodiscard]] PALPATE_INLINE V all_of(S x) noexcept {
   return x - V{};
@@ -59,10 +49,10 @@ template <Real S, class V, class F>
 [[nodiscard]] PALPATE_INLINE V by_array(const V& x, const F& f) noexcept {
   using Array = Eigen::Array<S, static_cast<int>(sizeof(V) / sizeof(S)), 1>;
   std::array<S, sizeof(V) / sizeof(S)> entry;
-  store_register(entry.data(), x);
+  store_vector(entry.data(), x);
   Eigen::Map<Array> all(entry.data());
   all = f(all);
-  return load_as<V>(entry.data());
+  return load_vector<V>(entry.data());
 }
 template <Real S, class V>
 [[nodiscard]] PALPATE_INLINE V root_of(const V& x) noexcept {

@@ -71,7 +71,7 @@ class NearLanes {
         const R square = nx * nx + ny * ny + nz * nz,
                 scale = weight / root_of<S>(square > least ? square : least);
         const auto add = [i](std::array<S, lane_count>& to, const R& more) {
-          store_register(&to[i], R(load_register(&to[i]) + more));
+          store_vector(&to[i], R(load_register(&to[i]) + more));
         };
         add(sum[0], scale * nx), add(sum[1], scale * ny), add(sum[2], scale * nz), add(sum[3], weight);
       }
@@ -142,13 +142,13 @@ class NearLanes {
       const R away_x = x - (u * a[0] + v * b[0] + w * c[0]), away_y = y - (u * a[1] + v * b[1] + w * c[1]),
               away_z = z - (u * a[2] + v * b[2] + w * c[2]),
               distance2 = away_x * away_x + away_y * away_y + away_z * away_z;
-      store_register(&foot.u[i], u);
-      store_register(&foot.v[i], v);
-      store_register(&foot.w[i], w);
-      store_register(&foot.distance2[i], distance2);
+      store_vector(&foot.u[i], u);
+      store_vector(&foot.v[i], v);
+      store_vector(&foot.w[i], w);
+      store_vector(&foot.distance2[i], distance2);
       const auto nearer = distance2 < load_register(&distance2_[i]);
       const auto keep = [i, &nearer](std::array<S, lane_count>& best, const R& here) {
-        store_register(&best[i], R(nearer ? here : load_register(&best[i])));
+        store_vector(&best[i], R(nearer ? here : load_register(&best[i])));
       };
       keep(distance2_, distance2), keep(nearest_, number);
       keep(away_[0], away_x), keep(away_[1], away_y), keep(away_[2], away_z);

@@ -48,11 +48,11 @@ class SuperellipsoidNear {
         typename SuperellipsoidNewton<S>::template Start<V> start;
         const std::array<V, 3> at = load<V>(x, i);
         const bool any_near = exact_.on_ray(at, start);
-        store_register(&result.near[i], V(start.near ? all_of<V>(S(1)) : V{}));
+        store_vector(&result.near[i], V(start.near ? all_of<V>(S(1)) : V{}));
         if (any_near)
           finish<V, N>(at, start.foot, start.shallow, i, result);
         else
-          store_register(&result.settled[i], V{});
+          store_vector(&result.settled[i], V{});
       }
     } else {
       Axes<N> z;
@@ -62,7 +62,7 @@ class SuperellipsoidNear {
         typename SuperellipsoidNewton<S>::template Foot<V> foot;
         foot.z = load<V>(z, i);
         exact_.raise(foot);
-        finish<V, N>(load<V>(x, i), foot, load_as<V>(&shallow[i]) > V{}, i, result);
+        finish<V, N>(load<V>(x, i), foot, load_vector<V>(&shallow[i]) > V{}, i, result);
       }
     }
   }
@@ -80,7 +80,7 @@ class SuperellipsoidNear {
   template <class V, class T, std::size_t N>
   [[nodiscard]] static PALPATE_INLINE std::array<V, 3> load(const std::array<std::array<T, N>, 3>& x,
                                                             std::size_t i) noexcept {
-    return {load_as<V>(&x[0][i]), load_as<V>(&x[1][i]), load_as<V>(&x[2][i])};
+    return {load_vector<V>(&x[0][i]), load_vector<V>(&x[1][i]), load_vector<V>(&x[2][i])};
   }
 
   // Steps to rounding, from a foot with its powers. From a rough foot both steps from one place are enough, where the first
@@ -118,11 +118,11 @@ class SuperellipsoidNear {
     const V square = nx * nx + ny * ny + nz * nz, per_n = root_of<S>(square) / square;
     const Vec3<S>& axes = exact_.axes();
     const std::array<V, 3> n{nx * per_n, ny * per_n, nz * per_n};
-    store_register(&result.depth[i],
-                   V((foot.z[0] * axes[0] - x[0]) * n[0] + (foot.z[1] * axes[1] - x[1]) * n[1] +
-                     (foot.z[2] * axes[2] - x[2]) * n[2]));
-    for (std::size_t k = 0; k < 3; ++k) store_register(&result.normal[k][i], n[k]);
-    store_register(&result.settled[i], V(settled ? all_of<V>(S(1)) : V{}));
+    store_vector(&result.depth[i],
+                 V((foot.z[0] * axes[0] - x[0]) * n[0] + (foot.z[1] * axes[1] - x[1]) * n[1] +
+                   (foot.z[2] * axes[2] - x[2]) * n[2]));
+    for (std::size_t k = 0; k < 3; ++k) store_vector(&result.normal[k][i], n[k]);
+    store_vector(&result.settled[i], V(settled ? all_of<V>(S(1)) : V{}));
   }
 
   // Feet in float. False if no lane is near. Where float is not enough to begin with, x itself is the start.
@@ -143,11 +143,11 @@ class SuperellipsoidNear {
       } else {
         start.shallow = start.near;
       }
-      store_register(&near[i], F(start.near ? all_of<F>(1.0f) : F{}));
-      store_register(&deep[i], F(start.shallow ? all_of<F>(1.0f) : F{}));
+      store_vector(&near[i], F(start.near ? all_of<F>(1.0f) : F{}));
+      store_vector(&deep[i], F(start.shallow ? all_of<F>(1.0f) : F{}));
       for (std::size_t k = 0; k < 3; ++k) {
         const F foot = start.foot.z[k];
-        store_register(&y[k][i], F(finite<float>(foot) ? foot : F{}));
+        store_vector(&y[k][i], F(finite<float>(foot) ? foot : F{}));
       }
     }
     lanes<N>(result.near) = lanes<N>(near).template cast<S>();
