@@ -17,10 +17,13 @@ namespace palpate::detail {
 
 #if defined(__AVX512F__)
 using DoubleRegister [[gnu::vector_size(64)]] = double;
+using DoubleBits [[gnu::vector_size(64)]] = std::uint64_t;
 #elif defined(__AVX__)
 using DoubleRegister [[gnu::vector_size(32)]] = double;
+using DoubleBits [[gnu::vector_size(32)]] = std::uint64_t;
 #else
 using DoubleRegister [[gnu::vector_size(16)]] = double;
+using DoubleBits [[gnu::vector_size(16)]] = std::uint64_t;
 #endif
 
 /// long double: one, for reference computations.
@@ -29,6 +32,10 @@ using LaneRegister = std::conditional_t<std::same_as<S, float>, WideRegister,
                                         std::conditional_t<std::same_as<S, double>, DoubleRegister, S>>;
 template <Real S>
 inline constexpr std::size_t register_lanes = sizeof(LaneRegister<S>) / sizeof(S);
+
+/// The bits of its entries.
+template <Real S>
+using LaneBits = std::conditional_t<std::same_as<S, float>, WideBits, DoubleBits>;
 
 /// What a comparison gives, to choose with: mask ? a : b.
 template <class V>
@@ -57,14 +64,6 @@ template <Real S, class V, class F>
 template <Real S, class V>
 [[nodiscard]] PALPATE_INLINE V root_of(const V& x) noexcept {
   return by_array<S>(x, [](const auto& a) { return a.sqrt(); });
-}
-template <Real S, class V>
-[[nodiscard]] PALPATE_INLINE V log_of(const V& x) noexcept {
-  return by_array<S>(x, [](const auto& a) { return a.log(); });
-}
-template <Real S, class V>
-[[nodiscard]] PALPATE_INLINE V exp_of(const V& x) noexcept {
-  return by_array<S>(x, [](const auto& a) { return a.exp(); });
 }
 
 template <class V>

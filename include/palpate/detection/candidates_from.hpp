@@ -59,8 +59,9 @@ class CandidatesFrom {
 
   [[nodiscard]] SurfacePoint<S> closest(const Vec3<S>& x) const noexcept { return body_.closest(x); }
   [[nodiscard]] Penetration<S> penetration(const Vec3<S>& x) const noexcept { return body_.penetration(x); }
-  void penetration(const PointLanes<S>& x,
-                   PenetrationLanes<S>& in) const noexcept requires HasPenetrationLanes<B> {
+  template <std::size_t N>
+  requires HasPenetrationLanes<B, N>
+  void penetration(const PointLanes<S, N>& x, PenetrationLanes<S, N>& in) const noexcept {
     body_.penetration(x, in);
   }
 

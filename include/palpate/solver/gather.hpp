@@ -21,6 +21,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <type_traits>
 #include <vector>
 
@@ -37,30 +38,78 @@ template <ContactSurface Object, ForceModel Force>
   return status;
 }
 
-/// Penetration of the first `count` points of a leaf, at once where the surface can; depth 0 for the others. Does one touch?
-template <ContactSurface Object, Real S>
-[[nodiscard]] inline bool penetrate(const Object& object, const PointLanes<S>& x, std::uint32_t count,
-                                    PenetrationLanes<S>& in) noexcept {
-  if constexpr (HasPenetrationLanes<Object>) {
-    object.penetration(x, in);
-  } else {
-    penetrate_one_by_one(object, x, count, in);
-  }
-  for (std::uint32_t i = count; i < x.x.size(); ++i)
-    in.depth[i] = in.gradient_x[i] = in.gradient_y[i] = in.gradient_z[i] = S(0);
-  return lane_array(in.depth).maxCoeff() > S(0);
+/// Two leaves as one, and each of them again.
+template <Real S>
+[[nodiscard]] inline PointLanes<S, 2 * lane_count> joined(const PointLanes<S>& a,
+                                                          const PointLanes<S>& b) noexcept {
+  PointLanes<S, 2 * lane_count> both;
+  const auto join = [](const std::array<S, lane_count>& first, const std::array<S, lane_count>& second,
+                       auto& to) {
+    std::memcpy(to.data(), first.data(), sizeof first);
+    std::memcpy(to.data() + lane_count, second.data(), sizeof second);
+  };
+  join(a.x, b.x, both.x), join(a.y, b.y, both.y), join(a.z, b.z, both.z);
+  return both;
+}
+template <Real S>
+[[nodiscard]] inline PenetrationLanes<S> part(const PenetrationLanes<S, 2 * lane_count>& both,
+                                              std::size_t k) noexcept {
+  PenetrationLanes<S> one;
+  const auto take = [k](const auto& from, std::array<S, lane_count>& to) {
+    std::memcpy(to.data(), from.data() + k * lane_count, sizeof to);
+  };
+  take(both.depth, one.depth);
+  take(both.gradient_x, one.gradient_x);
+  take(both.gradient_y, one.gradient_y);
+  take(both.gradient_z, one.gradient_z);
+  return one;
 }
 
 /// Calls visit(begin, x, in) for every leaf of the tool with a point inside the surface: `lane_count` points from `begin` on, depth
-/// <= 0 for those that do not touch.
+/// <= 0 for those that do not touch. Leaves are measured at once where the surface can, two of them where it can that.
 template <ContactSurface Object, Real S, class Visit>
 inline void for_each_touching_leaf(const ToolPoints<S>& tool, const Pose<S>& X, const Object& object,
                                    const Visit& visit) noexcept {
-  for_each_candidate_leaf(tool, X, object,
-                          [&](std::uint32_t begin, std::uint32_t count, const PointLanes<S>& x) noexcept {
-                            PenetrationLanes<S> in;
-                            if (penetrate(object, x, count, in)) visit(begin, x, in);
-                          });
+  const auto offer = [&](std::uint32_t begin, std::uint32_t count, const PointLanes<S>& x,
+                         PenetrationLanes<S>& in) noexcept {
+    for (std::uint32_t i = count; i < x.x.size(); ++i)  // the last leaf is filled up with a point of its own
+      in.depth[i] = in.gradient_x[i] = in.gradient_y[i] = in.gradient_z[i] = S(0);
+    if (lane_array(in.depth).maxCoeff() > S(0)) visit(begin, x, in);
+  };
+  if constexpr (HasPenetrationLanes<Object, 2 * lane_count>) {
+    struct Leaf {
+      std::uint32_t begin, count;
+      PointLanes<S> x;
+    };
+    std::array<Leaf, 2> leaf;
+    std::size_t leaves = 0;
+    for_each_candidate_leaf(tool, X, object,
+                            [&](std::uint32_t begin, std::uint32_t count, const PointLanes<S>& x) noexcept {
+                              leaf[leaves] = {begin, count, x};
+                              if (++leaves < leaf.size()) return;
+                              leaves = 0;
+                              PenetrationLanes<S, 2 * lane_count> both;
+                              object.penetration(joined(leaf[0].x, leaf[1].x), both);
+                              for (std::size_t k = 0; k < leaf.size(); ++k) {
+                                PenetrationLanes<S> in = part(both, k);
+                                offer(leaf[k].begin, leaf[k].count, leaf[k].x, in);
+                              }
+                            });
+    if (leaves == 0) return;
+    PenetrationLanes<S> in;
+    object.penetration(leaf[0].x, in);
+    offer(leaf[0].begin, leaf[0].count, leaf[0].x, in);
+  } else {
+    for_each_candidate_leaf(tool, X, object,
+                            [&](std::uint32_t begin, std::uint32_t count, const PointLanes<S>& x) noexcept {
+                              PenetrationLanes<S> in;
+                              if constexpr (HasPenetrationLanes<Object>)
+                                object.penetration(x, in);
+                              else
+                                penetrate_one_by_one(object, x, count, in);
+                              offer(begin, count, x, in);
+                            });
+  }
 }
 
 template <Real S>
@@ -201,17 +250,18 @@ class Collector<Regions<N, Sharing>, S> {
                  std::array<RegionSum<S>, N>& sums) noexcept {
     std::size_t leaves = 0, count = 0;
     S deepest = S(0);
-    for_each_candidate_leaf(
-        tool, X, object, [&](std::uint32_t begin, std::uint32_t points, const PointLanes<S>& x) noexcept {
+    detail::for_each_touching_leaf(
+        tool, X, object,
+        [&](std::uint32_t begin, const PointLanes<S>&, const PenetrationLanes<S>& in) noexcept {
           Leaf& leaf = leaf_[leaves];
-          if (!detail::penetrate(object, x, points, leaf.in)) return;
           leaf.begin = begin;
+          leaf.in = in;
           ++leaves;
           for (std::uint32_t i = 0; i < lanes; ++i) {
             point_[count] = begin + i;  // without a branch: overwritten by the next one unless it touches
-            count += leaf.in.depth[i] > S(0) ? 1u : 0u;
+            count += in.depth[i] > S(0) ? 1u : 0u;
           }
-          deepest = (std::max)(deepest, detail::lane_array(leaf.in.depth).maxCoeff());
+          deepest = (std::max)(deepest, detail::lane_array(in.depth).maxCoeff());
         });
     Status status =
         tracker_.update({point_.data(), count}, [&](std::size_t i) { return X * tool.point(point_[i]); });

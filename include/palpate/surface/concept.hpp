@@ -48,16 +48,16 @@ struct Penetration {
 inline constexpr std::size_t lane_count = 16;
 
 /// Points, coordinate by coordinate. By the cache line, so that no register's worth lies in two of them.
-template <Real S>
+template <Real S, std::size_t N = lane_count>
 struct alignas(64) PointLanes {
-  std::array<S, lane_count> x, y, z;  ///< [m]
+  std::array<S, N> x, y, z;  ///< [m]
 };
 
 /// Their penetration.
-template <Real S>
+template <Real S, std::size_t N = lane_count>
 struct alignas(64) PenetrationLanes {
-  std::array<S, lane_count> depth;                             ///< [m]
-  std::array<S, lane_count> gradient_x, gradient_y, gradient_z;  ///< [-]
+  std::array<S, N> depth;                             ///< [m]
+  std::array<S, N> gradient_x, gradient_y, gradient_z;  ///< [-]
 
   void set(std::size_t i, const Penetration<S>& one) noexcept {
     depth[i] = one.depth;
@@ -128,9 +128,9 @@ concept HasPenetration = requires(const B& body, const Vec3<typename B::Scalar>&
   { body.penetration(x) } noexcept -> std::same_as<Penetration<typename B::Scalar>>;
 };
 
-template <class B>  // optional: the same for `lane_count` points at once, to rounding; the solver uses it where it is there
-concept HasPenetrationLanes =
-    requires(const B& body, const PointLanes<typename B::Scalar>& x, PenetrationLanes<typename B::Scalar>& in) {
+template <class B, std::size_t N = lane_count>  // optional: the same for N points at once, to rounding; the solver uses it where it
+concept HasPenetrationLanes =                   // is there, for `lane_count` points or for twice as many
+    requires(const B& body, const PointLanes<typename B::Scalar, N>& x, PenetrationLanes<typename B::Scalar, N>& in) {
       { body.penetration(x, in) } noexcept;
     };
 

@@ -3,49 +3,15 @@
 
 /// @file  Newton's method for the closest point of a superellipsoid, many at once.
 
+#include <palpate/core/lane_power.hpp>
 #include <palpate/core/lane_register.hpp>
 #include <palpate/core/vector.hpp>
 
 #include <array>
-#include <cmath>
 #include <limits>
 #include <tuple>
 
 namespace palpate::detail {
-
-/// x^e of x > 0: by products where e is a small whole number, else by logarithm. `V`: a register of S, or S.
-template <Real S>
-class LanePower {
- public:
-  explicit LanePower(S e) noexcept
-      : exponent_(e), whole_(e >= S(0) && e <= S(18) && e == std::floor(e) ? static_cast<int>(e) : -1) {}
-
-  template <class V>
-  [[nodiscard]] PALPATE_INLINE V of(const V& x) const noexcept {
-    if (whole_ >= 0) return product(x);
-    return by_array<S>(x, [e = exponent_](const auto& a) { return (a.log() * e).exp(); });
-  }
-  /// The same where log x is known.
-  template <class V>
-  [[nodiscard]] PALPATE_INLINE V of(const V& x, const V& log_x) const noexcept {
-    if (whole_ >= 0) return product(x);
-    return exp_of<S>(V(log_x * exponent_));
-  }
-
- private:
-  template <class V>
-  [[nodiscard]] PALPATE_INLINE V product(const V& x) const noexcept {
-    V result = all_of<V>(S(1)), square = x;
-    for (int k = whole_; k > 0; k /= 2) {
-      if (k % 2 == 1) result *= square;
-      square *= square;
-    }
-    return result;
-  }
-
-  S exponent_;
-  int whole_;  // -1: not a small whole number
-};
 
 /// Closest point p of x = (x1, x2, x3) >= 0 relative to the centre under the constraint f = (F - 1) / q = 0, with
 ///
@@ -65,21 +31,23 @@ class SuperellipsoidNewton {
 
   template <class V>
   struct Foot {
-    Axes<V> z;
+    Axes<V> z;        // > 0
     V u, v, w, s, A;  // z1^(p-2), z2^(p-2), z3^(q-2), s, s^(q/p-1)
   };
   template <class V>
   struct Start {
     Foot<V> foot;
+    V F;
     MaskOf<V> near;     // inside, or outside by a thousandth
     MaskOf<V> shallow;  // and so far from the centre that there is a direction
   };
   template <class V>
   struct Step {
-    Axes<V> d, g, h;        // delta, g, adj(M) g
-    V Hxx, Hyy, Hxy, Hzz;   // H
-    V lambda, per_g2, per;  // 1 / |g|^2, 1 / (g . adj(M) g)
-    V length, curvature;    // largest |delta_i|; g . adj(M) g, > 0 at a foot that is the nearest around
+    Axes<V> d, g, h;       // delta, g, adj(|g|^2 M) g
+    V Hxx, Hyy, Hxy, Hzz;  // H
+    V g2, ag;              // |g|^2, lambda |g|^2
+    V length, curvature;   // largest |delta_i|; g . h, > 0 at a foot that is the nearest around
+    V per;                 // its inverse
   };
   template <class V>
   struct End {
@@ -99,32 +67,36 @@ class SuperellipsoidNewton {
 
   [[nodiscard]] const Vec3<S>& axes() const noexcept { return axes_; }
 
-  /// Where the ray from the centre through x leaves the body, for lanes that are near; false if none is.
+  // Everything below is of one register; what is of many goes through them stage by stage, as each waits long for its own
+  // logarithms and divisions.
+
+  /// The powers at x, and whether lanes are near.
   template <class V>
-  [[nodiscard]] PALPATE_INLINE bool on_ray(const Axes<V>& x, Start<V>& start) const noexcept {
+  PALPATE_INLINE void begin(const Axes<V>& x, Start<V>& start) const noexcept {
     Foot<V>& foot = start.foot;
-    foot.z = {x[0] * per_[0], x[1] * per_[1], x[2] * per_[2]};
+    foot.z = {off_zero<V>(x[0] * per_[0]), off_zero<V>(x[1] * per_[1]), off_zero<V>(x[2] * per_[2])};
     raise(foot);
-    const V F = foot.A * foot.s + foot.w * foot.z[2] * foot.z[2];
-    // A sum of numbers >= 0 is finite if they are. NaN may have become `tiny` above.
-    start.near =
-        all_true<MaskOf<V>>(finite<S>(V(x[0] + x[1] + x[2])), finite<S>(F), F < all_of<V>(S(1.001L)));
-    if (!any<S>(MaskOf<V>(start.near))) return false;
-    const V log_n = log_of<S>(F) * (S(-1) / q_);
-    start.shallow = all_true<MaskOf<V>>(start.near, log_n < all_of<V>(S(2)));
-    // N is homogeneous: no new powers of each.
-    const V n = exp_of<S>(log_n), n_p2 = across_.of(n, log_n), n_q2 = along_.of(n, log_n);
+    start.F = foot.A * foot.s + foot.w * foot.z[2] * foot.z[2];
+    // A sum of numbers >= 0 is finite if they are. NaN may have become a number.
+    start.near = all_true<MaskOf<V>>(finite<S>(V(x[0] + x[1] + x[2])), finite<S>(start.F),
+                                     start.F < all_of<V>(S(1.001L)));
+  }
+  /// On to where the ray from the centre through x leaves the body.
+  template <class V>
+  PALPATE_INLINE void leave(Start<V>& start) const noexcept {
+    Foot<V>& foot = start.foot;
+    const V log_n = log2_of<S>(start.F) * (S(-1) / q_);
+    start.shallow = all_true<MaskOf<V>>(start.near, log_n < all_of<V>(S(3)));
+    // F^(1/q) is homogeneous: no new powers of each. n^(q - p), as n^q = 1 / F:
+    const V n = exp2_of<S>(log_n), n_p2 = across_.of(n, log_n), n_p = n_p2 * n * n,
+            rest = S(1) / (start.F * n_p);
     for (V& z : foot.z) z *= n;
-    foot.u *= n_p2, foot.v *= n_p2, foot.w *= n_q2, foot.s *= n_p2 * n * n, foot.A *= n_q2 / n_p2;
-    return true;
+    foot.u *= n_p2, foot.v *= n_p2, foot.w *= n_p2 * rest, foot.s *= n_p, foot.A *= rest;
   }
 
   /// The powers of z.
   template <class V>
   PALPATE_INLINE void raise(Foot<V>& foot) const noexcept {
-    // The square must stay a normal number.
-    const V tiny = all_of<V>(sizeof(S) == sizeof(float) ? S(1e-18L) : S(1e-150L));
-    for (V& z : foot.z) z = larger_of(z, tiny);
     foot.u = across_.of(foot.z[0]);
     foot.v = across_.of(foot.z[1]);
     foot.w = along_.of(foot.z[2]);
@@ -147,14 +119,14 @@ class SuperellipsoidNewton {
     step.Hxy = c * ux * vy * (per_[0] * per_[1]);
     step.Hzz = w * ((q_ - S(1)) * per_[2] * per_[2]);
     const V ax = x[0] - z[0] * axes_[0], ay = x[1] - z[1] * axes_[1], az = x[2] - z[2] * axes_[2];
-    step.per_g2 = S(1) / (gx * gx + gy * gy + gz * gz);
-    step.lambda = (ax * gx + ay * gy + az * gz) * step.per_g2;
+    step.g2 = gx * gx + gy * gy + gz * gz;
+    step.ag = ax * gx + ay * gy + az * gz;
     const Matrix<V> M = matrix(step);
     step.h = {M.zz * (M.yy * gx - M.xy * gy), M.zz * (M.xx * gy - M.xy * gx),
               (M.xx * M.yy - M.xy * M.xy) * gz};
     step.curvature = step.h[0] * gx + step.h[1] * gy + step.h[2] * gz;
     step.per = S(1) / step.curvature;
-    step.d = solve(step, M, {ax - step.lambda * gx, ay - step.lambda * gy, az - step.lambda * gz}, f);
+    step.d = solve(step, M, {step.g2 * ax, step.g2 * ay, step.g2 * az}, f);
     step.length = length(step.d);
     return step;
   }
@@ -169,21 +141,24 @@ class SuperellipsoidNewton {
     // Half of T delta delta, by the derivatives of A along delta, A1 and A2, and those of the powers.
     const V e1 = d[0] * per_[0], e2 = d[1] * per_[1], e3 = d[2] * per_[2];
     const V ux = u * z[0], vy = v * z[1], ue = u * e1, ve = v * e2;
-    const V per_s = S(1) / s, c = (q_ - p_) * A * per_s, alpha = ux * e1 + vy * e2;
+    // One division for all inverses.
+    const V xy = z[0] * z[1], zs = z[2] * s, per_all = S(1) / (xy * zs * step.g2),
+            per_xyzs = per_all * step.g2, per_g2 = per_all * xy * zs, per_xy = per_xyzs * zs,
+            per_zs = per_xyzs * xy, per_s = per_zs * z[2];
+    const V c = (q_ - p_) * A * per_s, alpha = ux * e1 + vy * e2;
     const V A2 = c * ((q_ - S(2) * p_) * alpha * alpha * per_s + (p_ - S(1)) * (ue * e1 + ve * e2)),
             A1 = (S(2) * (p_ - S(1))) * c * alpha, C = ((p_ - S(1)) * (p_ - S(2))) * A;
     const auto beyond = [](const V& e, const V& at) -> V {
       return absolute(e) - (S(1e-5L) * at + std::numeric_limits<S>::epsilon());
     };
-    const V Tx = (A2 * ux + A1 * ue + C * ue * e1 / z[0]) * (per_[0] / S(2)),
-            Ty = (A2 * vy + A1 * ve + C * ve * e2 / z[1]) * (per_[1] / S(2)),
-            Tz = w * e3 * e3 / z[2] * ((q_ - S(1)) * (q_ - S(2)) * per_[2] / S(2));
-    // mu from the first step along g.
+    const V Tx = (A2 * ux + A1 * ue + C * ue * e1 * (per_xy * z[1])) * (per_[0] / S(2)),
+            Ty = (A2 * vy + A1 * ve + C * ve * e2 * (per_xy * z[0])) * (per_[1] / S(2)),
+            Tz = w * e3 * e3 * (per_zs * s) * ((q_ - S(1)) * (q_ - S(2)) * per_[2] / S(2));
+    // mu |g|^2 from the first step along g.
     const V along = g[0] * d[0] + g[1] * d[1] + g[2] * d[2],
-            mu = -(along + step.lambda * (g[0] * Hx + g[1] * Hy + g[2] * Hz)) * step.per_g2;
+            mu = -(along + step.ag * per_g2 * (g[0] * Hx + g[1] * Hy + g[2] * Hz));
     const Axes<V> more =
-        solve(step, matrix(step),
-              {-mu * Hx - step.lambda * Tx, -mu * Hy - step.lambda * Ty, -mu * Hz - step.lambda * Tz},
+        solve(step, matrix(step), {-mu * Hx - step.ag * Tx, -mu * Hy - step.ag * Ty, -mu * Hz - step.ag * Tz},
               V(S(0.5) * (d[0] * Hx + d[1] * Hy + d[2] * Hz)));
     return {{d[0] + more[0], d[1] + more[1], d[2] + more[2]},
             {g[0] + Hx + step.Hxx * more[0] + step.Hxy * more[1] + Tx,
@@ -192,15 +167,25 @@ class SuperellipsoidNewton {
             larger_of(larger_of(beyond(e1, z[0]), beyond(e2, z[1])), beyond(e3, z[2]))};
   }
 
-  /// First steps only, until those of all lanes of `which` are at most `enough`, or `most` of them; the last one.
-  template <class V>
-  [[nodiscard]] PALPATE_INLINE Step<V> descend(const Axes<V>& x, Foot<V>& foot, const MaskOf<V>& which,
-                                               S enough, int most) const noexcept {
-    for (int k = 1;; ++k) {
-      const Step<V> step = newton(x, foot);
-      move(step.d, foot);
-      if (k == most || !any<S>(all_true(which, negated(is_settled(step, enough))))) return step;
-      raise(foot);
+  /// From x by the ray and by first steps, until those of all shallow lanes are at most `enough`, or `most` of them; the last
+  /// one. False, and no step, if no lane is near.
+  template <class V, std::size_t M>
+  [[nodiscard]] PALPATE_INLINE bool descend(const std::array<Axes<V>, M>& x, std::array<Start<V>, M>& start,
+                                            std::array<Step<V>, M>& step, S enough, int most) const noexcept {
+    bool any_near = false;
+    for (std::size_t k = 0; k < M; ++k) begin(x[k], start[k]);
+    for (std::size_t k = 0; k < M; ++k) any_near |= any<S>(MaskOf<V>(start[k].near));
+    if (!any_near) return false;
+    for (std::size_t k = 0; k < M; ++k) leave(start[k]);
+    for (int count = 1;; ++count) {
+      bool done = true;
+      for (std::size_t k = 0; k < M; ++k) {
+        step[k] = newton(x[k], start[k].foot);
+        move(step[k].d, start[k].foot);
+        done &= !any<S>(all_true(start[k].shallow, negated(is_settled(step[k], enough))));
+      }
+      if (done || count == most) return true;
+      for (std::size_t k = 0; k < M; ++k) raise(start[k].foot);
     }
   }
   template <class V>
@@ -218,7 +203,8 @@ class SuperellipsoidNewton {
 
   template <class V>
   PALPATE_INLINE void move(const Axes<V>& d, Foot<V>& foot) const noexcept {
-    for (std::size_t i = 0; i < 3; ++i) foot.z[i] += d[i] * per_[static_cast<Eigen::Index>(i)];
+    foot.z = {off_zero<V>(foot.z[0] + d[0] * per_[0]), off_zero<V>(foot.z[1] + d[1] * per_[1]),
+              off_zero<V>(foot.z[2] + d[2] * per_[2])};
   }
 
   /// Next to the ends of the third axis powers underflow.
@@ -230,15 +216,23 @@ class SuperellipsoidNewton {
  private:
   static constexpr S least = (std::numeric_limits<S>::min)();
 
+  // Nothing in the units of the axes, but its square and products of three stay normal numbers.
+  template <class V>
+  [[nodiscard]] static PALPATE_INLINE V off_zero(const V& z) noexcept {
+    return larger_of(z, all_of<V>(sizeof(S) == sizeof(float) ? S(1e-18L) : S(1e-20L)));
+  }
+
   template <class V>
   struct Matrix {
     V xx, yy, xy, zz;
   };
+  // |g|^2 M.
   template <class V>
   [[nodiscard]] static PALPATE_INLINE Matrix<V> matrix(const Step<V>& step) noexcept {
-    const V& l = step.lambda;
-    return {S(1) + l * step.Hxx, S(1) + l * step.Hyy, l * step.Hxy, S(1) + l * step.Hzz};
+    return {step.g2 + step.ag * step.Hxx, step.g2 + step.ag * step.Hyy, step.ag * step.Hxy,
+            step.g2 + step.ag * step.Hzz};
   }
+  // M: |g|^2 M; tau: |g|^2 tau, and any multiple of g.
   template <class V>
   [[nodiscard]] static PALPATE_INLINE Axes<V> solve(const Step<V>& step, const Matrix<V>& M,
                                                     const Axes<V>& tau, const V& f) noexcept {

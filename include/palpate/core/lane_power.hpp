@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Powers of a register of numbers.
+///
+/// Why not Eigen's: gcc does not inline its logarithm of a register of floats, so that the formula around it leaves the registers,
+/// and it takes 5 times as long as this one; in double its logarithm takes 4 and its exponential 2 times as long (gcc 12, AVX-512).
+/// What they look after and this does not: numbers that are zero, negative, infinite or denormal.
+
+#include <palpate/core/lane_register.hpp>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <type_traits>
+
+namespace palpate::detail {
+
+/// How a number lies in memory: exponent plus `bias`, then `mantissa` bits. A whole number n added to `shift` is n + bias in the
+/// lowest of them. (-ffast-math would take such a sum apart: hence the barriers.)
+template <Real S>
+struct ExponentBits {
+  using Bits = std::conditional_t<std::same_as<S, float>, std::uint32_t, std::uint64_t>;
+  static constexpr int mantissa = std::numeric_limits<S>::digits - 1;
+  static constexpr int bias = std::numeric_limits<S>::max_exponent - 1;
+  static constexpr Bits whole = Bits{bias + mantissa} << mantissa;  // of 2^mantissa
+  static constexpr S shift = std::bit_cast<S>(whole) + S(bias);
+};
+
+/// The first N of c, changed so that sum_k c_k x^k stays as near as it can for |x| <= h: each power from the highest on is replaced
+/// by lower ones with its Chebyshev polynomial, which is off by c_n h^n / 2^(n - 1) at most.
+template <std::size_t N, std::size_t M>
+[[nodiscard]] constexpr std::array<long double, N> economised(std::array<long double, M> c,
+                                                              long double h) noexcept {
+  for (std::size_t n = M - 1; n >= N; --n) {
+    std::array<long double, M> before{1}, T{0, 1};  // of x / h
+    long double leading = 1 / h;                    // coefficient of x^n
+    for (std::size_t k = 1; k < n; ++k) {
+      std::array<long double, M> next{};
+      for (std::size_t i = 0; i < n; ++i) next[i + 1] = 2 * T[i];
+      for (std::size_t i = 0; i < n; ++i) next[i] -= before[i];
+      before = T, T = next, leading *= 2 / h;
+    }
+    long double scale = c[n] / leading;
+    for (std::size_t i = 0; i <= n; ++i, scale /= h) c[i] -= scale * T[i];
+  }
+  std::array<long double, N> first{};
+  for (std::size_t k = 0; k < N; ++k) first[k] = c[k];
+  return first;
+}
+
+/// sum_k c_k x^k.
+template <class V, class S, std::size_t N>
+[[nodiscard]] PALPATE_INLINE V polynomial(const V& x, const std::array<S, N>& c) noexcept {
+  // Two short chains: even and odd powers.
+  static_assert(N % 2 == 0);
+  const V square = x * x;
+  V even = all_of<V>(c[N - 2]), odd = all_of<V>(c[N - 1]);
+  for (std::size_t k = N - 2; k > 0; k -= 2) {
+    even = even * square + c[k - 2];
+    odd = odd * square + c[k - 1];
+  }
+  return even + x * odd;
+}
+
+/// log2((1 + t) / (1 - t)) / t as a polynomial in t^2, for numbers between sqrt(1/2) and sqrt(2).
+template <Real S>
+inline constexpr auto log2_series = [] {
+  constexpr std::size_t terms = std::same_as<S, float> ? 4 : 8;  // what is left out: below 1e-9, 2e-18
+  std::array<long double, 2 * terms + 9> taylor{};
+  for (std::size_t k = 0; k < taylor.size(); k += 2)
+    taylor[k] = 2 * std::numbers::log2e_v<long double> / static_cast<long double>(k + 1);
+  const auto best = economised<2 * terms - 1>(taylor, 0.1716L);  // (sqrt(2) - 1) / (sqrt(2) + 1)
+  std::array<S, terms> c{};
+  for (std::size_t k = 0; k < terms; ++k) c[k] = static_cast<S>(best[2 * k]);
+  return c;
+}();
+
+/// 2^x for |x| <= 1/2.
+template <Real S>
+inline constexpr auto exp2_series = [] {
+  constexpr std::size_t terms = std::same_as<S, float> ? 8 : 12;  // what is left out: below 1e-10, 5e-18
+  std::array<long double, terms + 6> taylor{1};
+  for (std::size_t k = 1; k < taylor.size(); ++k)
+    taylor[k] = taylor[k - 1] * std::numbers::ln2_v<long double> / static_cast<long double>(k);
+  const auto best = economised<terms>(taylor, 0.5L);
+  std::array<S, terms> c{};
+  for (std::size_t k = 0; k < terms; ++k) c[k] = static_cast<S>(best[k]);
+  return c;
+}();
+
+/// log2 x, x > 0 normal: x = 2^n m, sqrt(1/2) <= m < sqrt(2), and with t = (m - 1) / (m + 1)
+///
+///     log2 x = n + (2 / ln 2) (t + t^3 / 3 + t^5 / 5 + ..)
+///
+/// Anything else gives some number. `V`: a register of S, or S.
+template <Real S, class V>
+[[nodiscard]] PALPATE_INLINE V log2_of(const V& x) noexcept {
+  if constexpr (std::same_as<V, S>) {
+    return std::log2(x);
+  } else {
+    using E = ExponentBits<S>;
+    using Bits = LaneBits<S>;
+    constexpr auto root_half = std::bit_cast<typename E::Bits>(std::numbers::sqrt2_v<S> / S(2)),
+                   one = std::bit_cast<typename E::Bits>(S(1));
+    const Bits bits = std::bit_cast<Bits>(x), biased = (bits + (one - root_half)) >> E::mantissa;
+    const V m = std::bit_cast<V>(bits - (biased << E::mantissa) + one), t = (m - S(1)) / (m + S(1));
+    V n = std::bit_cast<V>(biased | E::whole) - E::shift;
+    EIGEN_OPTIMIZATION_BARRIER(n)
+    return n + t * polynomial(V(t * t), log2_series<S>);
+  }
+}
+
+/// 2^x; outside the exponents of normal numbers that of the nearest of them. NaN gives some number.
+///
+///     2^x = 2^n 2^(x - n), n whole, |x - n| <= 1/2
+template <Real S, class V>
+[[nodiscard]] PALPATE_INLINE V exp2_of(const V& x) noexcept {
+  if constexpr (std::same_as<V, S>) {
+    return std::exp2(x);
+  } else {
+    using E = ExponentBits<S>;
+    using Bits = LaneBits<S>;
+    const V least = all_of<V>(S(1 - E::bias)), most = all_of<V>(S(E::bias));
+    const V above = larger_of(x, least), at = above < most ? above : most;
+    V rounded = at + E::shift;  // to a whole number
+    EIGEN_OPTIMIZATION_BARRIER(rounded)
+    V n = rounded - E::shift;
+    EIGEN_OPTIMIZATION_BARRIER(n)
+    const Bits power = std::bit_cast<Bits>(rounded) << E::mantissa;
+    return polynomial(V(at - n), exp2_series<S>) * std::bit_cast<V>(power);
+  }
+}
+
+/// x^e of x > 0: by products where e is a small whole number, else by logarithm. `V`: a register of S, or S.
+template <Real S>
+class LanePower {
+ public:
+  explicit LanePower(S e) noexcept
+      : exponent_(e), whole_(e >= S(0) && e <= S(18) && e == std::floor(e) ? static_cast<int>(e) : -1) {}
+
+  template <class V>
+  [[nodiscard]] PALPATE_INLINE V of(const V& x) const noexcept {
+    return whole_ >= 0 ? product(x) : of(x, log2_of<S>(x));
+  }
+  /// The same where log2 x is known.
+  template <class V>
+  [[nodiscard]] PALPATE_INLINE V of(const V& x, const V& log2_x) const noexcept {
+    return whole_ >= 0 ? product(x) : exp2_of<S>(V(log2_x * exponent_));
+  }
+
+ private:
+  template <class V>
+  [[nodiscard]] PALPATE_INLINE V product(const V& x) const noexcept {
+    V result = all_of<V>(S(1)), square = x;
+    for (int k = whole_; k > 0; k /= 2) {
+      if (k % 2 == 1) result *= square;
+      square *= square;
+    }
+    return result;
+  }
+
+  S exponent_;
+  int whole_;  // -1: not a small whole number
+};
+
+}  // namespace palpate::detail
