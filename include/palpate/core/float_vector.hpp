@@ -121,12 +121,12 @@ PALPATE_INLINE void store_apart(unsigned char* to0, unsigned char* to1, unsigned
   store(to3, xy3, z[3]);
 }
 
-/// x in every entry.
-template <class V>
-[[nodiscard]] PALPATE_INLINE V splat(float x) noexcept {
+/// x in every entry. `V`: a register of S, or S itself.
+template <class V, std::floating_point S>
+[[nodiscard]] PALPATE_INLINE V all_of(S x) noexcept {
   return x - V{};
 }
-[[nodiscard]] PALPATE_INLINE Float4 four(float x) noexcept { return splat<Float4>(x); }
+[[nodiscard]] PALPATE_INLINE Float4 four(float x) noexcept { return all_of<Float4>(x); }
 /// Entry by entry; b where one is not a number. Written as instructions: gcc turns a comparison with 0 into masks.
 [[nodiscard]] PALPATE_INLINE Float4 larger(Float4 a, Float4 b) noexcept {
 #if defined(__SSE__)
@@ -164,7 +164,7 @@ template <class V>
 /// `V`: Float4 or FloatRegister.
 template <class V>
 [[nodiscard]] PALPATE_INLINE V between(const V& a, float least, float most) noexcept {
-  return smaller(larger(a, splat<V>(least)), splat<V>(most));
+  return smaller(larger(a, all_of<V>(least)), all_of<V>(most));
 }
 template <class V>
   requires(!std::floating_point<V>)

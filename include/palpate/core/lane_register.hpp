@@ -45,25 +45,13 @@ template <Real S>
 [[nodiscard]] PALPATE_INLINE LaneRegister<S> load_register(const S* from) noexcept {
   return load_vector<LaneRegister<S>>(from);
 }
-/// x in every entry. `V`: a register of S, or S itself.
-template <class V, Real S>
-[[nodiscard]] PALPATE_INLINE V all_of(S x) noexcept {
-  return x - V{};
-}
 
-/// f of all entries, an array's function.
-template <Real S, class V, class F>
-[[nodiscard]] PALPATE_INLINE V by_array(const V& x, const F& f) noexcept {
-  using Array = Eigen::Array<S, static_cast<int>(sizeof(V) / sizeof(S)), 1>;
-  std::array<S, sizeof(V) / sizeof(S)> entry;
-  store_vector(entry.data(), x);
-  Eigen::Map<Array> all(entry.data());
-  all = f(all);
-  return load_vector<V>(entry.data());
-}
 template <Real S, class V>
 [[nodiscard]] PALPATE_INLINE V root_of(const V& x) noexcept {
-  return by_array<S>(x, [](const auto& a) { return a.sqrt(); });
+  Eigen::Array<S, static_cast<int>(sizeof(V) / sizeof(S)), 1> entries;
+  store_vector(entries.data(), x);
+  entries = entries.sqrt();
+  return load_vector<V>(entries.data());
 }
 
 template <class V>

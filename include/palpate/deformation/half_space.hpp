@@ -281,9 +281,9 @@ class HalfSpaceDeformation {
     Lane x, y, z;
     PALPATE_INLINE Lanes(const Lane& a, const Lane& b, const Lane& c) noexcept : x(a), y(b), z(c) {}
     PALPATE_INLINE explicit Lanes(const V& v) noexcept
-        : x(detail::splat<Lane>(static_cast<float>(v.x()))),
-          y(detail::splat<Lane>(static_cast<float>(v.y()))),
-          z(detail::splat<Lane>(static_cast<float>(v.z()))) {}
+        : x(detail::all_of<Lane>(static_cast<float>(v.x()))),
+          y(detail::all_of<Lane>(static_cast<float>(v.y()))),
+          z(detail::all_of<Lane>(static_cast<float>(v.z()))) {}
     [[nodiscard]] PALPATE_INLINE Lane dot(const Lanes& o) const noexcept {
       return x * o.x + y * o.y + z * o.z;
     }
@@ -307,9 +307,9 @@ class HalfSpaceDeformation {
     const Lanes o(base_.middle()), m(inward), shift(motion_.template head<3>()),
         turn(motion_.template tail<3>());
     const Lanes t(tangential<double>(force, inward)), k(inward.cross(moment));
-    const Lane fn = detail::splat<Lane>(static_cast<float>(force.dot(inward))),
-               twist = detail::splat<Lane>(static_cast<float>(moment.dot(inward))),
-               one = detail::splat<Lane>(1);
+    const Lane fn = detail::all_of<Lane>(static_cast<float>(force.dot(inward))),
+               twist = detail::all_of<Lane>(static_cast<float>(moment.dot(inward))),
+               one = detail::all_of<Lane>(1.f);
     const Profile& b = profile_;
     for (std::size_t v = 0; v < x_.size(); v += lane) {
       const Lanes r = from(o, v);
@@ -333,16 +333,16 @@ class HalfSpaceDeformation {
   }
 
   void add_contact(const Contact& c, const V& force) noexcept {
-    using detail::larger, detail::smaller, detail::splat;
+    using detail::all_of, detail::larger, detail::smaller;
     const Lanes o(c.x), m(c.m), t(scale * tangential<double>(force, c.m));
     const float a = static_cast<float>(c.a), nu = static_cast<float>(p_.nu),
                 fn = static_cast<float>(scale * force.dot(c.m));
     for (std::size_t v = 0; v < x_.size(); v += lane) {
       const Lanes r = from(o, v);
-      const Lane z = r.dot(m), square = larger(r.dot(r), splat<Lane>(1e-12f * a * a));
+      const Lane z = r.dot(m), square = larger(r.dot(r), all_of<Lane>(1e-12f * a * a));
       Lanes p = r;
       p.add(-z, m);
-      const Lane depth = larger(z * (1.f - smaller(a * a / square, splat<Lane>(1))), Lane{});
+      const Lane depth = larger(z * (1.f - smaller(a * a / square, all_of<Lane>(1.f))), Lane{});
       const auto w = Disc<Lane, float>(p.dot(p), depth, a).flat(fn, p.dot(t), nu);
       Lanes u{lane_at(&ux_[v]), lane_at(&uy_[v]), lane_at(&uz_[v])};
       u.add(w.in_plane, p);

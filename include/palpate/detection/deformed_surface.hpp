@@ -4,6 +4,7 @@
 /// @file  Contact with the shape as it is now: what has bulged out is touched where it is seen.
 
 #include <palpate/surface/near_blend.hpp>
+#include <palpate/surface/near_lanes.hpp>
 #include <palpate/surface/triangle_mesh.hpp>
 
 #include <span>
@@ -70,6 +71,39 @@ class DeformedSurface {
                                      [this](const auto& at) { return bulge(at); }, bulge(near)));
   }
 
+  /// The same for `lane_count` points; below a bulge, where they are close together, by one walk of the tree.
+  void penetration(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
+    if (!(highest_ > S(0))) return undeformed(x, in);
+    const auto px = detail::lane_array(x.x), py = detail::lane_array(x.y), pz = detail::lane_array(x.z);
+    if (is_finite(S(px.sum() + py.sum() + pz.sum()))) {
+      const Vec3<S> low(px.minCoeff(), py.minCoeff(), pz.minCoeff()),
+          high(px.maxCoeff(), py.maxCoeff(), pz.maxCoeff()), middle = low + (high - low) / S(2);
+      const S spread = (high - low).norm() / S(2);
+      if (body_.separated(middle, spread + highest_)) return undeformed(x, in);
+      PointLanes<S> lowered;
+      const auto lower = [&](const detail::NearLanes<S>& lanes) {
+        std::array<detail::LaneArray<S>, 3> b;
+        const detail::LaneArray<S> weight = lanes.mean(
+            blend_, [this](std::uint32_t triangle, std::size_t corner) { return bulge_at(triangle, corner); },
+            b);
+        for (std::size_t i = 0; i < lane_count; ++i) {
+          const auto k = static_cast<Eigen::Index>(i);
+          const bool on_mesh = !(weight[k] > S(0));
+          const Vec3<S> here = on_mesh ? bulge(lanes.nearest(i)) : Vec3<S>(b[0][k], b[1][k], b[2][k]);
+          lowered.x[i] = x.x[i] - here.x();
+          lowered.y[i] = x.y[i] - here.y();
+          lowered.z[i] = x.z[i] - here.z();
+        }
+      };
+      if (blend_.shares(spread)) {
+        const S far = std::sqrt(tree_.closest(middle).distance2) + spread;
+        if (detail::with_near_lanes(tree_, blend_, x, middle, spread, far, lower))
+          return undeformed(lowered, in);
+      }
+    }
+    detail::penetrate_one_by_one(*this, x, lane_count, in);
+  }
+
   /// True only if no point of the ball is inside the undeformed body or below a bulge.
   [[nodiscard]] bool separated(const Vec3<S>& c, S r) const noexcept {
     return body_.separated(c, r + highest_);
@@ -90,12 +124,19 @@ class DeformedSurface {
   }
 
   [[nodiscard]] Vec3<S> bulge(const typename TriangleBvh<S>::Nearest& at) const noexcept {
-    Vec3<S> b = Vec3<S>::Zero();
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t v = tree_.triangles()[at.triangle][k];
-      b += at.weight[static_cast<int>(k)] * height_[v] * normal_[v];
-    }
-    return b;
+    return at.weight[0] * bulge_at(at.triangle, 0) + at.weight[1] * bulge_at(at.triangle, 1) +
+           at.weight[2] * bulge_at(at.triangle, 2);
+  }
+  [[nodiscard]] Vec3<S> bulge_at(std::uint32_t triangle, std::size_t corner) const noexcept {
+    const std::uint32_t v = tree_.triangles()[triangle][corner];
+    return height_[v] * normal_[v];
+  }
+
+  void undeformed(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
+    if constexpr (HasPenetrationLanes<B>)
+      body_.penetration(x, in);
+    else
+      detail::penetrate_one_by_one(body_, x, lane_count, in);
   }
 
   B body_;

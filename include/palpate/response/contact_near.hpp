@@ -90,10 +90,10 @@ struct ContactNear {
     const V rx = at.x - place.x(), ry = at.y - place.y(), rz = at.z - place.z();
     const V z = rx * m.x() + ry * m.y() + rz * m.z();
     const V px = rx - z * m.x(), py = ry - z * m.y(), pz = rz - z * m.z();
-    const V r2 = larger(rx * rx + ry * ry + rz * rz, splat<V>(1e-12f * a * a)),
+    const V r2 = larger(rx * rx + ry * ry + rz * rz, all_of<V>(1e-12f * a * a)),
             p2 = px * px + py * py + pz * pz;
-    const V near2 = smaller(a * a / r2, splat<V>(1.f));
-    const V depth = larger(z - smaller(z * near2, splat<V>(sag)), V{});
+    const V near2 = smaller(a * a / r2, all_of<V>(1.f));
+    const V depth = larger(z - smaller(z * near2, all_of<V>(sag)), V{});
     const Disc<V, float> disc(p2, depth, a);
     if (ball) {
       auto u = disc.hertz(normal, nu);
@@ -117,7 +117,7 @@ struct ContactNear {
       const V inverse = root(near2), beyond = larger(1.f - near2, V{});  // 1 / s, at most 1; 1 - 1 / s^2
       // q_r / (a s): asin(1/s) / (s sqrt(s^2 - 1 + e^2)), with the roots of 1/s^2 instead.
       const V q_r = (radial / a) * arc_sine(inverse) * near2 * inverse /
-                    root(larger(beyond + rim2 * near2, splat<V>(1e-12f)));
+                    root(larger(beyond + rim2 * near2, all_of<V>(1e-12f)));
       const V near4 = near2 * near2, falling = near4 * root(beyond),
               slid = px * slide.x() + py * slide.y() + pz * slide.z();
       in_plane += dipole * d.in_plane + q_r + inverse * falling * (radial_4 + radial_6 * near2 + slid);

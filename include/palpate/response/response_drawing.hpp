@@ -237,7 +237,7 @@ class ResponseDrawing {
     // Over to the field outside within a fiftieth of the radius: a vertex that comes in moves fast, and does not jump.
     const Vec3<float> d = c.d.template cast<float>();
     const V inside = between(V(51.f - 50.f / near.a * root(r2)), 0, 1) * static_cast<float>(c.grip);
-    Axes<V> to{splat<V>(d.x()), splat<V>(d.y()), splat<V>(d.z())};
+    Axes<V> to{all_of<V>(d.x()), all_of<V>(d.y()), all_of<V>(d.z())};
     if (c.is_turned()) {
       const Mat3<float>& t = near.turned;
       to.x += t(0, 0) * rx + t(0, 1) * ry + t(0, 2) * rz;

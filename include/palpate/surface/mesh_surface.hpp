@@ -125,36 +125,33 @@ class MeshSurface {
     const S spread = (high - low).norm() / S(2);
     const auto bounds = grid_.at(middle);
     if (bounds.lower > spread) return;
-    const auto one_by_one = [&] {
-      for (std::size_t i = 0; i < lane_count; ++i)
-        if (open[i]) in.set(i, penetration(Vec3<S>(x.x[i], x.y[i], x.z[i])));
-    };
-    // Farther apart they have too many triangles near them: the walk would be for nothing.
-    if (spread > S(1.5L) * edge_) return one_by_one();
-    // No point is farther from the mesh than the middle is and its own distance from there.
-    const S far = std::sqrt(bvh_.on_triangle(middle, bounds.triangle).distance2) + spread;
-    const detail::NearTriangles<S> around(bvh_, middle, std::sqrt(blend_.band(far)) + spread);
-    if (!around.complete()) return one_by_one();
     for (std::size_t i = 0; i < lane_count; ++i)
       if (!open[i]) points.x[i] = middle.x(), points.y[i] = middle.y(), points.z[i] = middle.z();
-    const detail::NearLanes<S> lanes(bvh_, blend_, bvh_.cull(middle, spread), points, around);
-    if (!lanes.complete()) return one_by_one();
-    std::array<detail::LaneArray<S>, 3> mean;
-    if (normals_.patches == 1)
-      lanes.mean(
-          blend_,
-          [this](std::uint32_t triangle, std::uint32_t corner) -> const Vec3<S>& {
-            return normals_.normal[normals_.corner[3 * triangle + corner]];
-          },
-          mean);
-    for (std::size_t i = 0; i < lane_count; ++i) {
-      const Nearest near = lanes.nearest(i);
-      if (!open[i] || !(lanes.along(i, pseudonormal(near)) < S(0))) continue;
-      const auto k = static_cast<Eigen::Index>(i);
-      const S d = lanes.distance()[k];
-      in.set(i, {d, normals_.patches == 1 ? Vec3<S>(mean[0][k], mean[1][k], mean[2][k])
-                                          : direction(Vec3<S>(x.x[i], x.y[i], x.z[i]), near, d)});
+    const auto at_once = [&](const detail::NearLanes<S>& lanes) {
+      std::array<detail::LaneArray<S>, 3> mean;
+      if (normals_.patches == 1)
+        lanes.mean_direction(
+            blend_,
+            [this](std::uint32_t triangle, std::uint32_t corner) -> const Vec3<S>& {
+              return normals_.normal[normals_.corner[3 * triangle + corner]];
+            },
+            mean);
+      for (std::size_t i = 0; i < lane_count; ++i) {
+        const Nearest near = lanes.nearest(i);
+        if (!open[i] || !(lanes.along(i, pseudonormal(near)) < S(0))) continue;
+        const auto k = static_cast<Eigen::Index>(i);
+        const S d = lanes.distance()[k];
+        in.set(i, {d, normals_.patches == 1 ? Vec3<S>(mean[0][k], mean[1][k], mean[2][k])
+                                            : direction(Vec3<S>(x.x[i], x.y[i], x.z[i]), near, d)});
+      }
+    };
+    if (blend_.shares(spread)) {
+      // No point is farther from the mesh than the middle is and its own distance from there.
+      const S far = std::sqrt(bvh_.on_triangle(middle, bounds.triangle).distance2) + spread;
+      if (detail::with_near_lanes(bvh_, blend_, points, middle, spread, far, at_once)) return;
     }
+    for (std::size_t i = 0; i < lane_count; ++i)
+      if (open[i]) in.set(i, penetration(Vec3<S>(x.x[i], x.y[i], x.z[i])));
   }
 
   [[nodiscard]] bool inside(const Vec3<S>& x) const noexcept {

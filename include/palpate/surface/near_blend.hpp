@@ -33,6 +33,10 @@ class NearBlend {
 
   explicit NearBlend(S edge) noexcept : edge_(edge) {}
 
+  /// Are points within `spread` [m] of another so close together that their triangles are mostly the same? Farther apart they have
+  /// too many around them for one walk of the tree.
+  [[nodiscard]] bool shares(S spread) const noexcept { return spread <= S(1.5L) * edge_; }
+
   /// ((1 + e) d)^2: what a search must visit.
   [[nodiscard]] S band(S d) const noexcept {
     const S ratio = d > S(0) ? edge_ / (S(4) * d) : S(1),

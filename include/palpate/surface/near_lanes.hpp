@@ -49,10 +49,33 @@ class NearLanes {
             Vec3<S>(x_.x[i] - away_[0][i], x_.y[i] - away_[1][i], x_.z[i] - away_[2][i]), distance2_[i]};
   }
 
-  /// NearBlend's mean of unit vectors: value(triangle, corner) at the corners, interpolated and normalised. Lanes without
-  /// weight have 0.
+  /// NearBlend's mean of vectors: value(triangle, corner) at the corners, interpolated. The sums of weights; lanes where that
+  /// is 0 have 0.
   template <class Value>
-  void mean(const NearBlend<S>& blend, const Value& value, std::array<Lanes, 3>& out) const noexcept {
+  Lanes mean(const NearBlend<S>& blend, const Value& value, std::array<Lanes, 3>& out) const noexcept {
+    return mean_of<false>(blend, value, out);
+  }
+  /// The same of unit vectors: what is interpolated is normalised.
+  template <class Value>
+  Lanes mean_direction(const NearBlend<S>& blend, const Value& value,
+                       std::array<Lanes, 3>& out) const noexcept {
+    return mean_of<true>(blend, value, out);
+  }
+
+ private:
+  using R = LaneRegister<S>;
+
+  struct Foot {
+    std::uint32_t triangle;
+    std::array<S, lane_count> u, v, w, distance2;  // weights of the corners
+  };
+
+  struct Weights {
+    R u, v, w;
+  };
+
+  template <bool unit, class Value>
+  Lanes mean_of(const NearBlend<S>& blend, const Value& value, std::array<Lanes, 3>& out) const noexcept {
     const Lanes radius = blend.radii(distance_), limit = radius.square(),
                 per = (radius - distance_).max((std::numeric_limits<S>::min)()).inverse();
     std::array<std::array<S, lane_count>, 4> sum{};
@@ -68,29 +91,21 @@ class NearLanes {
         const R here = (load_register(radius.data() + i) - root_of<S>(load_register(&foot.distance2[i]))) *
                        load_register(per.data() + i);
         const R weight = here > S(0) ? here * here : R{};
-        const R square = nx * nx + ny * ny + nz * nz,
-                scale = weight / root_of<S>(square > least ? square : least);
+        R scale = weight;
+        if constexpr (unit) {
+          const R square = nx * nx + ny * ny + nz * nz;
+          scale /= root_of<S>(square > least ? square : least);
+        }
         const auto add = [i](std::array<S, lane_count>& to, const R& more) {
           store_vector(&to[i], R(load_register(&to[i]) + more));
         };
         add(sum[0], scale * nx), add(sum[1], scale * ny), add(sum[2], scale * nz), add(sum[3], weight);
       }
     }
-    const Lanes total = lane_array(sum[3]).max((std::numeric_limits<S>::min)());
-    for (std::size_t k = 0; k < 3; ++k) out[k] = lane_array(sum[k]) / total;
+    const Lanes total = lane_array(sum[3]), some = total.max((std::numeric_limits<S>::min)());
+    for (std::size_t k = 0; k < 3; ++k) out[k] = lane_array(sum[k]) / some;
+    return total;
   }
-
- private:
-  using R = LaneRegister<S>;
-
-  struct Foot {
-    std::uint32_t triangle;
-    std::array<S, lane_count> u, v, w, distance2;  // weights of the corners
-  };
-
-  struct Weights {
-    R u, v, w;
-  };
 
   // closest_on_triangle() with its cases as selections, from the last to the first.
   [[nodiscard]] PALPATE_INLINE static Weights weights(const R& x, const R& y, const R& z, const Vec3<S>& a,
@@ -163,5 +178,19 @@ class NearLanes {
   std::array<std::array<S, lane_count>, 3> away_{};  // from it to the point
   Lanes distance_;
 };
+
+/// Calls visit(NearLanes) for points within `spread` of `middle` and no farther than `far` from the mesh [m]. False, and no call,
+/// where they have too many triangles near them: then each is better off on its own.
+template <Real S, class Visit>
+[[nodiscard]] inline bool with_near_lanes(const TriangleBvh<S>& tree, const NearBlend<S>& blend,
+                                          const PointLanes<S>& x, const Vec3<S>& middle, S spread, S far,
+                                          const Visit& visit) noexcept {
+  const NearTriangles<S> around(tree, middle, std::sqrt(blend.band(far)) + spread);
+  if (!around.complete()) return false;
+  const NearLanes<S> lanes(tree, blend, tree.cull(middle, spread), x, around);
+  if (!lanes.complete()) return false;
+  visit(lanes);
+  return true;
+}
 
 }  // namespace palpate::detail

@@ -40,6 +40,8 @@ DeformedSurface<Sphere<double>> raised(double h) {
 }
 
 static_assert(ContactSurface<DeformedSurface<Sphere<double>>>);
+static_assert(HasPenetrationLanes<DeformedSurface<Sphere<double>>> &&
+              HasPenetrationLanes<DeformedSurface<MeshSurface<float>>>);
 static_assert(ContactSurface<DeformedSurface<MeshSurface<float>>>);
 
 }  // namespace
@@ -125,6 +127,58 @@ TEST_CASE("deformed surface: depth follows place and shape without a jump") {
     before = depth;
   }
   CHECK(before > 0.003);
+}
+
+TEST_CASE("deformed surface: many points at once are as each of them") {
+  const MeshSurface<double> own(skin);
+  DeformedSurface<MeshSurface<double>> on_mesh(own, skin);
+  on_mesh.update(hill(0.004));
+  std::mt19937_64 random(10);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto compare = [&](const auto& body) {
+    int below = 0, apart = 0;
+    for (int k = 0; k < 2000; ++k) {
+      // A leaf's worth around a place near the surface, closer together than its triangles or not; some on vertices.
+      const V middle =
+          V(uniform(random), 1, uniform(random)).normalized() * (radius + 0.003 * uniform(random));
+      const double size = k % 3 == 0 ? 0.02 : 0.0005;
+      PointLanes<double> x;
+      for (std::size_t i = 0; i < lane_count; ++i) {
+        V p = middle + size * V(uniform(random), uniform(random), uniform(random));
+        if (k % 5 == 0 && i == 0) p = body.tree().vertices()[static_cast<std::size_t>(k)];
+        if (k % 50 == 0 && i == 7) p.y() = std::numeric_limits<double>::quiet_NaN();
+        x.x[i] = p.x(), x.y[i] = p.y(), x.z[i] = p.z();
+      }
+      PenetrationLanes<double> in;
+      body.penetration(x, in);
+      for (std::size_t i = 0; i < lane_count; ++i) {
+        const auto one = body.penetration(V(x.x[i], x.y[i], x.z[i]));
+        // Sums over the same triangles in another order; where a place is on a triangle's edge, either may count.
+        REQUIRE(std::abs(in.depth[i] - one.depth) <= 1e-14);
+        if (!(one.depth > 1e-6)) continue;
+        REQUIRE((V(in.gradient_x[i], in.gradient_y[i], in.gradient_z[i]) - one.gradient).norm() <= 1e-8);
+        below += one.depth > own.penetration(V(x.x[i], x.y[i], x.z[i])).depth + 1e-4;
+        apart += size > 0.001;
+      }
+    }
+    CHECK(below > 1000);
+    CHECK(apart > 1000);
+  };
+  compare(raised(0.004));
+  compare(on_mesh);
+  const DeformedSurface<Sphere<double>> still(ball, skin);
+  PointLanes<double> x{};
+  PenetrationLanes<double> in;
+  x.y.fill(radius - 0.001);
+  still.penetration(x, in);
+  CHECK_RELATIVE(in.depth[3], 0.001, 1e-12);
+  // Far away, and where sums overflow.
+  for (const double far : {1.0, 1e200, 1.7e308}) {
+    x.y.fill(far);
+    on_mesh.penetration(x, in);
+    CHECK(in.depth[0] == 0);
+    CHECK(in.gradient_y[15] == 0);
+  }
 }
 
 TEST_CASE("deformed surface: moving some vertices equals moving all, without heap") {
