@@ -27,7 +27,7 @@ namespace palpate {
 /// The paper's detection uses the deformed shape as well but does not say from where depth is then measured: this is our
 /// reading. The bulge is one tick old, so a stiff bulge raised by the contact itself can lag behind by a tick.
 ///
-/// Without a bulge it costs nothing but the test; with one, a closest point on the mesh for each candidate. `mesh` is
+/// Without a bulge it costs nothing but the test; with one, a search of the mesh for each leaf of the tool, or each candidate. `mesh` is
 /// the undeformed surface in the object's frame, closed and oriented (checked by TriangleMesh); it need not be the body's
 /// own, so an exact body keeps its exact depth.
 template <ContactSurface B>

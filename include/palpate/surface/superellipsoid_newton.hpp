@@ -20,7 +20,7 @@ namespace palpate::detail {
 ///     delta = (g x (M (tau x g)) - f adj(M) g) / (g . adj(M) g)
 ///
 /// g = grad f, H its derivatives; lambda g is the part of x - p along g, tau the rest. The last line solves the one
-/// above it; no multiple of g g^T in H would change it, and H couples only the first two axes. Lengths in units of a_min.
+/// above it; no multiple of g g^T in H would change it, and H couples only the first two axes. Lengths in units of about a_min.
 /// A second step from the same place (Chebyshev's method) has what delta changes to second order on the right, T the third
 /// derivatives: -mu H delta - (lambda/2) T delta delta for tau, (1/2) delta . H delta for f. It needs no new powers.
 template <Real S>
@@ -216,7 +216,7 @@ class SuperellipsoidNewton {
  private:
   static constexpr S least = (std::numeric_limits<S>::min)();
 
-  // Nothing in the units of the axes, but its square and products of three stay normal numbers.
+  // Nothing in the units of the axes, but its square stays a normal number; in double, where finish() is used, products of three too.
   template <class V>
   [[nodiscard]] static PALPATE_INLINE V off_zero(const V& z) noexcept {
     return larger_of(z, all_of<V>(sizeof(S) == sizeof(float) ? S(1e-18L) : S(1e-20L)));
