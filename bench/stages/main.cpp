@@ -73,13 +73,14 @@ int main(int argc, char** argv) {
     use(load);
   };
   const auto weights = [&](std::size_t) {
-    WeightBlock<float> block;
     for (std::size_t f = 0; f < partition.faces().size(); ++f) {
-      const Face<float>& face = partition.faces()[f];
-      for (std::size_t first = face.first; first < face.first + face.count; first += block_size) {
-        partition.weights(load.at, f, first, block);
-        use(block);
-      }
+      const std::size_t count = partition.faces()[f].count;
+      detail::with_weights(partition, load.at, f, partition.faces()[f].first, [count](const auto& of) {
+        for (std::size_t i = 0; i < count; i += detail::LaneGroup<float>::lanes) {
+          const auto w = of.at(i);
+          use(w);
+        }
+      });
     }
   };
   struct Stage {

@@ -37,6 +37,13 @@
 #define PALPATE_INLINE inline __attribute__((always_inline))
 #endif
 
+// The same of a lambda, after its parameters.
+#if defined(_MSC_VER)
+#define PALPATE_INLINE_LAMBDA
+#else
+#define PALPATE_INLINE_LAMBDA __attribute__((always_inline))
+#endif
+
 // Everything called in this function becomes part of it at any level of optimisation: for loops over vector registers,
 // whose every operation is a function of Eigen's.
 // Not without optimisation or under a sanitizer, where it only makes the compilation long.

@@ -8,6 +8,7 @@
 
 #include <palpate/interpolation/concept.hpp>
 
+#include <algorithm>
 #include <random>
 #include <vector>
 
@@ -23,10 +24,10 @@ template <Interpolation I>
   for (std::size_t f = 0; f < partition.faces().size(); ++f) {
     const Face<S>& face = partition.faces()[f];
     for (std::size_t first = face.first; first < face.first + face.count; first += block_size) {
+      const std::size_t count = std::min(block_size, face.first + face.count - first);
       Block<S> u[3] = {};
-      interpolation.add(load, f, first, nullptr, u[0].value, u[1].value, u[2].value);
-      for (std::size_t i = 0; i < block_size && first + i < face.first + face.count; ++i)
-        field[first + i] = Vec3<S>(u[0][i], u[1][i], u[2][i]);
+      interpolation.add(load, f, first, count, nullptr, u[0].value, u[1].value, u[2].value);
+      for (std::size_t i = 0; i < count; ++i) field[first + i] = Vec3<S>(u[0][i], u[1][i], u[2][i]);
     }
   }
   return field;

@@ -74,14 +74,13 @@ class RegionSkeletons {
   /// At most M contacts; those beyond are left out.
   void share(std::span<const SkeletonContact<Scalar>> contacts, Result& result) const noexcept {
     const std::size_t m = (std::min)(contacts.size(), M);
-    result.loads.clear();
-    result.from_others.clear();
+    result.loads.set_size(m);
+    result.from_others.set_size(m);
     std::array<typename K::Beams, M> beams;
     std::array<detail::BeamScale, M> scale;
     bool usable = true;
     for (std::size_t j = 0; j < m; ++j) {
-      result.loads.push_back({});
-      result.from_others.push_back(Vec3<Scalar>::Zero());
+      result.from_others[j].setZero();
       skeleton_.begin(contacts[j], beams[j], result.loads[j]);
       scale[j] = detail::shortest(std::span<const SkeletonBeam>(beams[j].begin(), beams[j].size()));
       usable = usable && K::is_usable(contacts[j]) && is_finite(contacts[j].normal_force);
@@ -112,11 +111,10 @@ class RegionSkeletons {
   [[nodiscard]] SkeletonBeam between(Contacts contacts, const Result& result, std::size_t j,
                                      std::size_t k) const noexcept {
     const double reach = (std::max)(result.loads[j].total_length, result.loads[k].total_length);
-    SkeletonBeam beam;
-    beam.axis = contacts[j].place.template cast<double>() - contacts[k].place.template cast<double>();
-    beam.length = beam.axis.norm();
-    beam.axis = unit_or<double>(beam.axis, Vec3<double>::UnitX());
-    beam.length = (std::max)(beam.length, least_distance * reach);
+    const Vec3<double> apart =
+        contacts[j].place.template cast<double>() - contacts[k].place.template cast<double>();
+    SkeletonBeam beam{unit_or<double>(apart, Vec3<double>::UnitX()),
+                      (std::max)(apart.norm(), least_distance * reach), 0, 0, Vec3<double>::Zero()};
     const double share = G::share_of_beam(static_cast<double>(contacts[j].normal_force),
                                           static_cast<double>(contacts[k].normal_force));
     const auto& theory = skeleton_.theory();

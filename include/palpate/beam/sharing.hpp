@@ -16,11 +16,11 @@ namespace palpate {
 /// One beam as the sharing sees it: double whatever the scene's scalar, because the system's condition
 /// reaches (4/3)(l/r)^2.
 struct SkeletonBeam {
-  Vec3<double> axis = Vec3<double>::Zero();   ///< x_i: unit, from the extremal point to the contact
-  double length = 0;                          ///< l_i [m]; > 0: held above a tiny part of the longest
-  double axial = 0;                           ///< ka = E S/l [N/m]
-  double transverse = 0;                      ///< kt = 3 E I/l^3 or the theory's [N/m]
-  Vec3<double> force = Vec3<double>::Zero();  ///< F_i at the common end [N]: the result
+  Vec3<double> axis;   ///< x_i: unit, from the extremal point to the contact
+  double length;       ///< l_i [m]; > 0: held above a tiny part of the longest
+  double axial;        ///< ka = E S/l [N/m]
+  double transverse;   ///< kt = 3 E I/l^3 or the theory's [N/m]
+  Vec3<double> force;  ///< F_i at the common end [N]: the result
 };
 
 /// K_i d = ka x x^T d + kt (1 - x x^T) d: the force [N] that moves this beam's end by d [m].

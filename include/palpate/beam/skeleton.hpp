@@ -65,7 +65,7 @@ class Skeleton {
   using Theory = T;
   using Section = typename R::Section;
   using Load = SkeletonLoad<S, N>;
-  using Beams = FixedVector<SkeletonBeam, N>;
+  using Beams = FixedVector<SkeletonBeam, N, Spare::undefined>;
 
   /// Lengths below this part of the longest are held at it: such a beam takes the whole load to rounding.
   static constexpr double least_length = 1e-15;
@@ -119,12 +119,11 @@ class Skeleton {
     double sum = 0, longest = 0;
     beams.clear();
     for (const Vec3<S>& point : points_) {
-      SkeletonBeam beam;
-      beam.axis = place - point.template cast<double>();
-      beam.length = beam.axis.norm();  // coordinates are below 1e6 m
-      sum += beam.length;
-      longest = (std::max)(longest, beam.length);
-      beams.push_back(beam);
+      const Vec3<double> axis = place - point.template cast<double>();
+      const double length = axis.norm();  // coordinates are below 1e6 m
+      sum += length;
+      longest = (std::max)(longest, length);
+      beams.push_back({axis, length, 0, 0, Vec3<double>::Zero()});
     }
     load.total_length = sum;
     const Section section = rule_.section(sum);

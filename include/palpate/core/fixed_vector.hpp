@@ -7,10 +7,26 @@
 
 #include <array>
 #include <cstddef>
+#include <type_traits>
 
 namespace palpate {
 
+/// What lies past size(): zeros, so that equal lists are equal bytes, or whatever was there, for long lists on a tick's stack.
+enum class Spare { zero, undefined };
+
+namespace detail {
 template <class T, std::size_t N>
+struct ZeroedItems {
+  std::array<T, N> list{};
+};
+template <class T, std::size_t N>
+struct RawItems {
+  RawItems() noexcept {}
+  std::array<T, N> list;
+};
+}  // namespace detail
+
+template <class T, std::size_t N, Spare spare = Spare::zero>
 class FixedVector {
  public:
   static constexpr std::size_t capacity = N;
@@ -22,17 +38,22 @@ class FixedVector {
   /// Precondition: not full().
   constexpr void push_back(const T& item) noexcept {
     PALPATE_ASSERT(!full());
-    items_[size_++] = item;
+    items_.list[size_++] = item;
   }
-  [[nodiscard]] constexpr T& operator[](std::size_t i) noexcept { return items_[i]; }
-  [[nodiscard]] constexpr const T& operator[](std::size_t i) const noexcept { return items_[i]; }
-  [[nodiscard]] constexpr T* begin() noexcept { return items_.data(); }
-  [[nodiscard]] constexpr T* end() noexcept { return items_.data() + size_; }
-  [[nodiscard]] constexpr const T* begin() const noexcept { return items_.data(); }
-  [[nodiscard]] constexpr const T* end() const noexcept { return items_.data() + size_; }
+  /// n items; those past the present size() are what was there. Precondition: n <= N.
+  constexpr void set_size(std::size_t n) noexcept {
+    PALPATE_ASSERT(n <= N);
+    size_ = n;
+  }
+  [[nodiscard]] constexpr T& operator[](std::size_t i) noexcept { return items_.list[i]; }
+  [[nodiscard]] constexpr const T& operator[](std::size_t i) const noexcept { return items_.list[i]; }
+  [[nodiscard]] constexpr T* begin() noexcept { return items_.list.data(); }
+  [[nodiscard]] constexpr T* end() noexcept { return items_.list.data() + size_; }
+  [[nodiscard]] constexpr const T* begin() const noexcept { return items_.list.data(); }
+  [[nodiscard]] constexpr const T* end() const noexcept { return items_.list.data() + size_; }
 
  private:
-  std::array<T, N> items_{};
+  std::conditional_t<spare == Spare::zero, detail::ZeroedItems<T, N>, detail::RawItems<T, N>> items_;
   std::size_t size_ = 0;
 };
 

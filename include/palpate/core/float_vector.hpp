@@ -22,6 +22,7 @@
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
+#include <utility>
 
 namespace palpate::detail {
 
@@ -55,6 +56,13 @@ inline constexpr std::uint32_t entries = sizeof(V) / sizeof(float);
 template <class V>
 [[nodiscard]] constexpr std::size_t whole(std::size_t n) noexcept {
   return (n + entries<V> - 1) / entries<V> * entries<V>;
+}
+
+/// work(0) .. work(N - 1), written out: compilers keep short loops at -O2, and their arrays in memory.
+template <std::size_t N, class Work>
+PALPATE_INLINE void unrolled(const Work& work) noexcept {
+  [&]<std::size_t... i>(std::index_sequence<i...>) PALPATE_INLINE_LAMBDA { (work(i), ...); }
+  (std::make_index_sequence<N>{});
 }
 
 template <class V>
@@ -128,6 +136,14 @@ template <class V, std::floating_point S>
 }
 [[nodiscard]] PALPATE_INLINE Float4 four(float x) noexcept { return all_of<Float4>(x); }
 /// Entry by entry; b where one is not a number. Written as instructions: gcc turns a comparison with 0 into masks.
+template <std::floating_point S>
+[[nodiscard]] constexpr S larger(S a, S b) noexcept {
+  return a > b ? a : b;
+}
+template <std::floating_point S>
+[[nodiscard]] constexpr S smaller(S a, S b) noexcept {
+  return a < b ? a : b;
+}
 [[nodiscard]] PALPATE_INLINE Float4 larger(Float4 a, Float4 b) noexcept {
 #if defined(__SSE__)
   return _mm_max_ps(a, b);
@@ -161,14 +177,22 @@ template <class V, std::floating_point S>
 }
 [[nodiscard]] PALPATE_INLINE FloatRegister root(FloatRegister a) noexcept { return _mm256_sqrt_ps(a); }
 #endif
+#if defined(__AVX512F__)
+// All entries by a mask: gcc 12 warns of what the plain form leaves undefined.
+[[nodiscard]] PALPATE_INLINE WideRegister larger(WideRegister a, WideRegister b) noexcept {
+  return _mm512_maskz_max_ps(0xffff, a, b);
+}
+[[nodiscard]] PALPATE_INLINE WideRegister smaller(WideRegister a, WideRegister b) noexcept {
+  return _mm512_maskz_min_ps(0xffff, a, b);
+}
+#endif
 /// `V`: Float4 or FloatRegister.
 template <class V>
 [[nodiscard]] PALPATE_INLINE V between(const V& a, float least, float most) noexcept {
   return smaller(larger(a, all_of<V>(least)), all_of<V>(most));
 }
 template <class V>
-  requires(!std::floating_point<V>)
-[[nodiscard]] PALPATE_INLINE V magnitude(const V& a) noexcept {
+requires(!std::floating_point<V>) [[nodiscard]] PALPATE_INLINE V magnitude(const V& a) noexcept {
   return std::bit_cast<V>(std::bit_cast<BitsOf<V>>(a) & 0x7fffffffu);
 }
 /// Entries from, from + 1, .. of a register.
@@ -183,8 +207,8 @@ template <class V>
 
 /// The same for wider registers.
 template <class V>
-  requires(entries<V> > entries<Float4>)
-PALPATE_INLINE void store_interleaved(unsigned char* to, const V& x, const V& y, const V& z) noexcept {
+requires(entries<V> > entries<Float4>) PALPATE_INLINE
+    void store_interleaved(unsigned char* to, const V& x, const V& y, const V& z) noexcept {
   for (std::size_t from = 0; from < entries<V>; from += entries<Float4>)
     store_interleaved(to + 3 * sizeof(float) * from, four_of(x, from), four_of(y, from), four_of(z, from));
 }

@@ -7,6 +7,7 @@
 /// and it takes 5 times as long as this one; in double its logarithm takes 4 and its exponential 2 times as long (gcc 12, AVX-512).
 /// What they look after and this does not: numbers that are zero, negative, infinite or denormal.
 
+#include <palpate/core/lane_polynomial.hpp>
 #include <palpate/core/lane_register.hpp>
 
 #include <array>
@@ -31,42 +32,6 @@ struct ExponentBits {
   static constexpr S shift = std::bit_cast<S>(whole) + S(bias);
 };
 
-/// The first N of c, changed so that sum_k c_k x^k stays as near as it can for |x| <= h: each power from the highest on is replaced
-/// by lower ones with its Chebyshev polynomial, which is off by c_n h^n / 2^(n - 1) at most.
-template <std::size_t N, std::size_t M>
-[[nodiscard]] constexpr std::array<long double, N> economised(std::array<long double, M> c,
-                                                              long double h) noexcept {
-  for (std::size_t n = M - 1; n >= N; --n) {
-    std::array<long double, M> before{1}, T{0, 1};  // of x / h
-    long double leading = 1 / h;                    // coefficient of x^n
-    for (std::size_t k = 1; k < n; ++k) {
-      std::array<long double, M> next{};
-      for (std::size_t i = 0; i < n; ++i) next[i + 1] = 2 * T[i];
-      for (std::size_t i = 0; i < n; ++i) next[i] -= before[i];
-      before = T, T = next, leading *= 2 / h;
-    }
-    long double scale = c[n] / leading;
-    for (std::size_t i = 0; i <= n; ++i, scale /= h) c[i] -= scale * T[i];
-  }
-  std::array<long double, N> first{};
-  for (std::size_t k = 0; k < N; ++k) first[k] = c[k];
-  return first;
-}
-
-/// sum_k c_k x^k.
-template <class V, class S, std::size_t N>
-[[nodiscard]] PALPATE_INLINE V polynomial(const V& x, const std::array<S, N>& c) noexcept {
-  // Two short chains: even and odd powers.
-  static_assert(N % 2 == 0);
-  const V square = x * x;
-  V even = all_of<V>(c[N - 2]), odd = all_of<V>(c[N - 1]);
-  for (std::size_t k = N - 2; k > 0; k -= 2) {
-    even = even * square + c[k - 2];
-    odd = odd * square + c[k - 1];
-  }
-  return even + x * odd;
-}
-
 /// log2((1 + t) / (1 - t)) / t as a polynomial in t^2, for numbers between sqrt(1/2) and sqrt(2).
 template <Real S>
 inline constexpr auto log2_series = [] {
@@ -87,10 +52,7 @@ inline constexpr auto exp2_series = [] {
   std::array<long double, terms + 6> taylor{1};
   for (std::size_t k = 1; k < taylor.size(); ++k)
     taylor[k] = taylor[k - 1] * std::numbers::ln2_v<long double> / static_cast<long double>(k);
-  const auto best = economised<terms>(taylor, 0.5L);
-  std::array<S, terms> c{};
-  for (std::size_t k = 0; k < terms; ++k) c[k] = static_cast<S>(best[k]);
-  return c;
+  return rounded<S>(economised<terms>(taylor, 0.5L));
 }();
 
 /// log2 x, x > 0 normal: x = 2^n m, sqrt(1/2) <= m < sqrt(2), and with t = (m - 1) / (m + 1)
@@ -126,7 +88,7 @@ template <Real S, class V>
     using E = ExponentBits<S>;
     using Bits = LaneBits<S>;
     const V least = all_of<V>(S(1 - E::bias)), most = all_of<V>(S(E::bias));
-    const V above = larger_of(x, least), at = above < most ? above : most;
+    const V at = smaller(larger(x, least), most);
     V rounded = at + E::shift;  // to a whole number
     EIGEN_OPTIMIZATION_BARRIER(rounded)
     V n = rounded - E::shift;

@@ -9,6 +9,10 @@
 
 #include <Eigen/Core>
 
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
 #include <array>
 #include <type_traits>
 #include <utility>
@@ -33,9 +37,33 @@ using LaneRegister = std::conditional_t<std::same_as<S, float>, WideRegister,
 template <Real S>
 inline constexpr std::size_t register_lanes = sizeof(LaneRegister<S>) / sizeof(S);
 
+/// What a register's entries are; a number is its own.
+template <class V>
+[[nodiscard]] constexpr auto first_entry(const V& x) noexcept {
+  if constexpr (std::is_floating_point_v<V>)
+    return x;
+  else
+    return first_entry(x[0]);
+}
+template <class V>
+using EntryOf = decltype(first_entry(std::declval<V>()));
+
 /// The bits of its entries.
 template <Real S>
 using LaneBits = std::conditional_t<std::same_as<S, float>, WideBits, DoubleBits>;
+
+/// A number that meets many registers: as many of it as a register holds, unless a load can repeat it.
+#if defined(__AVX__)
+template <Real S>
+using LaneFactor = S;
+#else
+template <Real S>
+using LaneFactor = LaneRegister<S>;
+#endif
+template <Real S>
+[[nodiscard]] PALPATE_INLINE LaneFactor<S> lane_factor(S x) noexcept {
+  return all_of<LaneFactor<S>>(x);
+}
 
 /// What a comparison gives, to choose with: mask ? a : b.
 template <class V>
@@ -54,9 +82,28 @@ template <Real S, class V>
   return load_vector<V>(entries.data());
 }
 
-template <class V>
-[[nodiscard]] PALPATE_INLINE V larger_of(const V& a, const V& b) noexcept {
+/// As of floats: entry by entry; b where one is not a number.
+[[nodiscard]] PALPATE_INLINE DoubleRegister larger(DoubleRegister a, DoubleRegister b) noexcept {
+#if defined(__AVX512F__)
+  return _mm512_maskz_max_pd(0xff, a, b);
+#elif defined(__AVX__)
+  return _mm256_max_pd(a, b);
+#elif defined(__SSE2__)
+  return _mm_max_pd(a, b);
+#else
   return a > b ? a : b;
+#endif
+}
+[[nodiscard]] PALPATE_INLINE DoubleRegister smaller(DoubleRegister a, DoubleRegister b) noexcept {
+#if defined(__AVX512F__)
+  return _mm512_maskz_min_pd(0xff, a, b);
+#elif defined(__AVX__)
+  return _mm256_min_pd(a, b);
+#elif defined(__SSE2__)
+  return _mm_min_pd(a, b);
+#else
+  return a < b ? a : b;
+#endif
 }
 template <class V>
 [[nodiscard]] PALPATE_INLINE V absolute(const V& a) noexcept {
@@ -94,6 +141,11 @@ template <Real S, class M>
 [[nodiscard]] PALPATE_INLINE bool any(const M& mask) noexcept {
   if constexpr (std::same_as<M, bool>) {
     return mask;
+#if defined(__AVX512F__)
+  } else if constexpr (sizeof mask == sizeof(__m512i)) {
+    const auto bits = std::bit_cast<__m512i>(mask);
+    return _mm512_test_epi64_mask(bits, bits) != 0;
+#endif
   } else {
     std::array<std::uint64_t, sizeof(M) / sizeof(std::uint64_t)> words;
     std::memcpy(words.data(), &mask, sizeof mask);

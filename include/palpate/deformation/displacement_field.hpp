@@ -4,6 +4,7 @@
 /// @file  Output stage: displacements of corners and contacts to vertices and normals in the caller's buffer.
 
 #include <palpate/core/error.hpp>
+#include <palpate/core/lane_group.hpp>
 #include <palpate/core/vertex_writer.hpp>
 #include <palpate/deformation/concept.hpp>
 #include <palpate/deformation/partition_normals.hpp>
@@ -102,10 +103,7 @@ class DisplacementField {
       moved.vertices += face.count;
     }
     if (moved.vertices > 0) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        moved.lower[static_cast<int>(axis)] = extent.lower[axis].minCoeff();
-        moved.upper[static_cast<int>(axis)] = extent.upper[axis].maxCoeff();
-      }
+      extent.write(moved);
       if (with_normals) normals_.write_apart(partition(), dirty_, out);
     }
     loads_.swap(previous_);
@@ -121,23 +119,33 @@ class DisplacementField {
  private:
   using Load = typename I::Load;
 
-  using Lanes = detail::Lanes<S>;
+  using V = detail::LaneGroup<S>;
 
   struct Extent {  // extremes of each lane
-    std::array<Lanes, 3> lower, upper;
+    std::array<V, 3> lower, upper;
     Extent() noexcept {
-      lower.fill(Lanes::Constant((std::numeric_limits<S>::max)()));
-      upper.fill(Lanes::Constant(std::numeric_limits<S>::lowest()));
+      lower.fill(V((std::numeric_limits<S>::max)()));
+      upper.fill(V(std::numeric_limits<S>::lowest()));
     }
-    void take(std::size_t axis, const Block<S>& x) noexcept {
-      Lanes low = lower[axis], high = upper[axis];
-      for (std::size_t i = 0; i < block_size; i += detail::lanes<S>) {
-        const Lanes here = detail::load_lanes(x.value + i);
-        low = low.min(here);
-        high = high.max(here);
+    PALPATE_INLINE void take(const Block<S> (&x)[3], std::size_t count) noexcept {
+      detail::unrolled<3>([&](std::size_t axis) PALPATE_INLINE_LAMBDA {
+        V low = lower[axis], high = upper[axis];
+        for (std::size_t i = 0; i < count; i += V::lanes) {
+          const V at(&x[axis][i]);
+          low = smaller(low, at);
+          high = larger(high, at);
+        }
+        lower[axis] = low, upper[axis] = high;
+      });
+    }
+    void write(Moved<S>& moved) const noexcept {
+      std::array<S, V::lanes> entry;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        lower[axis].store(entry.data());
+        moved.lower[static_cast<int>(axis)] = *std::min_element(entry.begin(), entry.end());
+        upper[axis].store(entry.data());
+        moved.upper[static_cast<int>(axis)] = *std::max_element(entry.begin(), entry.end());
       }
-      lower[axis] = low;
-      upper[axis] = high;
     }
   };
 
@@ -150,14 +158,13 @@ class DisplacementField {
       return less > S(0) && (place - face.centre).squaredNorm() < reach * reach;
     }
     // 1 - (1 - w) b(r) at the vertices of a block.
-    void scale(const S* PALPATE_RESTRICT x, const S* PALPATE_RESTRICT y, const S* PALPATE_RESTRICT z,
-               S* PALPATE_RESTRICT out) const noexcept {
+    PALPATE_INLINE void scale(const S* x, const S* y, const S* z, std::size_t count, S* out) const noexcept {
       const S px = place.x(), py = place.y(), pz = place.z(), per_square = S(1) / (radius * radius),
               most = less;
-      for (std::size_t i = 0; i < block_size; ++i) {
-        const S dx = x[i] - px, dy = y[i] - py, dz = z[i] - pz;
-        const S left = S(1) - (dx * dx + dy * dy + dz * dz) * per_square, inside = left > S(0) ? left : S(0);
-        out[i] = S(1) - most * inside * inside;
+      for (std::size_t i = 0; i < count; i += V::lanes) {
+        const V dx = V(x + i) - px, dy = V(y + i) - py, dz = V(z + i) - pz;
+        const V inside = larger(S(1) - (dx * dx + dy * dy + dz * dz) * per_square, V{});
+        (S(1) - most * inside * inside).store(out + i);
       }
     }
     [[nodiscard]] bool operator==(const Dent&) const noexcept = default;
@@ -211,23 +218,21 @@ class DisplacementField {
     const FacePartition<S>& part = partition();
     Block<S> x[3], scale;
     for (int axis = 0; axis < 3; ++axis) {
-      const S* PALPATE_RESTRICT const rest = part.rest(axis) + first;
-      for (std::size_t i = 0; i < block_size; i += detail::lanes<S>)
-        detail::store_lanes(x[axis].value + i, detail::load_lanes(rest + i));
+      const S* const rest = part.rest(axis) + first;
+      for (std::size_t i = 0; i < count; i += V::lanes) V(rest + i).store(&x[axis][i]);
     }
     for (std::size_t c = 0; c < active_; ++c) {
       if (!interpolation_.moves(loads_[c], f)) continue;
       const bool dented = dents_[c].touches(part.faces()[f]);
       if (dented)
-        dents_[c].scale(part.rest(0) + first, part.rest(1) + first, part.rest(2) + first, scale.value);
-      interpolation_.add(loads_[c], f, first, dented ? scale.value : nullptr, x[0].value, x[1].value,
+        dents_[c].scale(part.rest(0) + first, part.rest(1) + first, part.rest(2) + first, count, scale.value);
+      interpolation_.add(loads_[c], f, first, count, dented ? scale.value : nullptr, x[0].value, x[1].value,
                          x[2].value);
     }
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      for (std::size_t i = count; i < block_size; ++i)
-        x[axis][i] = x[axis][0];  // not vertices of this block: no part in the box
-      extent.take(axis, x[axis]);
+    for (std::size_t i = count; i % V::lanes != 0; ++i) {
+      for (Block<S>& of : x) of[i] = of[0];  // not vertices of this block: no part in the box
     }
+    extent.take(x, count);
     put(first, count, x[0].value, x[1].value, x[2].value, out);
     if (p_.normals) normals_.place(part.faces()[f], first, count, x[0].value, x[1].value, x[2].value);
   }

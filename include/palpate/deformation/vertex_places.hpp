@@ -88,6 +88,11 @@ class VertexPlaces {
       using V = detail::WideRegister;
       for (; i + detail::entries<V> <= count; i += detail::entries<V>)
         detail::store_vector(to + i, detail::load_vector<V>(from + i));
+      if (i > 0) {  // the last register over some of the one before it
+        i = count - detail::entries<V>;
+        detail::store_vector(to + i, detail::load_vector<V>(from + i));
+        return;
+      }
     }
     for (; i < count; ++i) to[i] = static_cast<float>(from[i]);
   }

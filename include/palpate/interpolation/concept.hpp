@@ -79,12 +79,12 @@ concept HasSame = requires(const I& field, const typename I::Load& load, std::si
   noexcept->std::same_as<bool>;
 };
 
-/// Adds the field at the block that starts at slot `first` of the face to x, y, z [m]. `scale`, if not null, multiplies
-/// the contact's displacement per vertex (V.B). All four hold `block_size` entries.
+/// Adds the field at `count` slots of the face from `first` on, at most `block_size`, to x, y, z [m]. `scale`, if not null,
+/// multiplies the contact's displacement per vertex (V.B). All four hold `block_size` entries.
 template <class I>
 concept HasAdd = requires(const I& field, const typename I::Load& load, std::size_t face, std::size_t first,
-                          const typename I::Scalar* scale, typename I::Scalar* x) {
-  { field.add(load, face, first, scale, x, x, x) }
+                          std::size_t count, const typename I::Scalar* scale, typename I::Scalar* x) {
+  { field.add(load, face, first, count, scale, x, x, x) }
   noexcept;
 };
 
@@ -106,34 +106,6 @@ template <Real S, class Load>
   }
   const bool split = partition.share(a.at, face) > S(0) || partition.share(b.at, face) > S(0);
   return !split || (a.contact == b.contact && a.at.weight == b.at.weight);
-}
-
-/// Three weighted sums over the rows of a block, x = sum_r row_r value_r[0], y and z with value_r[1] and [2]; added to
-/// x, y, z if `Onto`. A face has at least three corners, and one row more where the contact splits it.
-template <bool Onto, Real S>
-inline void sum_rows(const WeightBlock<S>& w, const std::array<const S*, max_face_corners + 1>& value,
-                     S* PALPATE_RESTRICT x, S* PALPATE_RESTRICT y, S* PALPATE_RESTRICT z) noexcept {
-  const S* PALPATE_RESTRICT const a = w.row[0];
-  const S* PALPATE_RESTRICT const b = w.row[1];
-  const S* PALPATE_RESTRICT const c = w.row[2];
-  const S ax = value[0][0], ay = value[0][1], az = value[0][2], bx = value[1][0], by = value[1][1],
-          bz = value[1][2], cx = value[2][0], cy = value[2][1], cz = value[2][2];
-  for (std::size_t i = 0; i < block_size; ++i) {
-    const S sx = a[i] * ax + b[i] * bx + c[i] * cx, sy = a[i] * ay + b[i] * by + c[i] * cy,
-            sz = a[i] * az + b[i] * bz + c[i] * cz;
-    x[i] = Onto ? x[i] + sx : sx;
-    y[i] = Onto ? y[i] + sy : sy;
-    z[i] = Onto ? z[i] + sz : sz;
-  }
-  for (std::size_t r = 3; r < w.rows; ++r) {
-    const S* PALPATE_RESTRICT const row = w.row[r];
-    const S rx = value[r][0], ry = value[r][1], rz = value[r][2];
-    for (std::size_t i = 0; i < block_size; ++i) {
-      x[i] += row[i] * rx;
-      y[i] += row[i] * ry;
-      z[i] += row[i] * rz;
-    }
-  }
 }
 
 }  // namespace detail

@@ -4,6 +4,7 @@
 /// @file  Interpolation of displacement vectors: the plain one.
 
 #include <palpate/interpolation/concept.hpp>
+#include <palpate/interpolation/face_weights.hpp>
 
 #include <utility>
 
@@ -64,20 +65,24 @@ class LinearInterpolation {
     return detail::same_values(partition_, a, b, face);
   }
 
-  void add(const Load& load, std::size_t face, std::size_t first, const S* scale, S* x, S* y,
-           S* z) const noexcept {
+  PALPATE_FLATTEN void add(const Load& load, std::size_t face, std::size_t first, std::size_t count,
+                           const S* scale, S* x, S* y, S* z) const noexcept {
     if (!load.active) return;
     const Face<S>& f = partition_.faces()[face];
-    WeightBlock<S> w;
-    partition_.weights(load.at, face, first, w);
-    if (scale != nullptr && w.rows > f.corners) {
-      S* PALPATE_RESTRICT const mu = w.storage[f.corners].value;
-      for (std::size_t i = 0; i < block_size; ++i) mu[i] *= scale[i];
-    }
-    std::array<const S*, max_face_corners + 1> value;
-    for (std::size_t k = 0; k < f.corners; ++k) value[k] = load.corner[f.corner[k]].data();
-    value[f.corners] = load.contact.data();
-    detail::sum_rows<true>(w, value, x, y, z);
+    using Terms = detail::FaceTerms<S, 3>;
+    Terms value;
+    for (std::size_t k = 0; k < f.corners; ++k) value.corner[k] = Terms::row(load.corner[f.corner[k]].data());
+    value.contact = Terms::row(load.contact.data());
+    detail::with_weights(partition_, load.at, face, first, [&](const auto& weights) PALPATE_INLINE_LAMBDA {
+      for (std::size_t i = 0; i < count; i += detail::LaneGroup<S>::lanes) {
+        const auto w = weights.at(i);
+        auto contact = w.contact();
+        if (scale != nullptr) contact = contact * decltype(contact)(scale + i);
+        detail::add_group(x + i, w.sum(value, 0, contact));
+        detail::add_group(y + i, w.sum(value, 1, contact));
+        detail::add_group(z + i, w.sum(value, 2, contact));
+      }
+    });
   }
 
  private:

@@ -44,12 +44,14 @@ struct PointWeights {
   std::array<S, max_extremal_points> weight{};
 };
 
-/// Weights of a block, row by row: the corners of its face, then the contact point's.
+/// How a contact splits a face: what the weights of the face's vertices need. Corner by corner.
 template <Real S>
-struct WeightBlock {
-  std::size_t rows = 0;  ///< corners, and one more when split
-  std::array<const S*, max_face_corners + 1> row{};
-  std::array<Block<S>, max_face_corners + 1> storage;  ///< where the rows of a split face live
+struct FaceSplit {
+  std::size_t corners = 0;
+  S share = 0;                              ///< largest weight of the contact in the face; 0: not split
+  std::array<S, max_face_corners> P{};      ///< weight of the contact's place
+  std::array<S, max_face_corners> per_P{};  ///< 1 / max(P, h)
+  std::array<S, max_face_corners> lift{};   ///< max(0, h - P) / max(P, h)
 };
 
 /// Faces and generalized barycentric weights over a surface that is star-shaped about a centre. No equation: V.A.2
@@ -145,50 +147,24 @@ class FacePartition {
     return share;
   }
 
-  /// Weights of the block that starts at slot `first` of `face`; split by the contact at `at` if that reaches the face.
-  void weights(const PointWeights<S>& at, std::size_t face, std::size_t first,
-               WeightBlock<S>& out) const noexcept {
+  /// How the contact at `at` splits `face`.
+  [[nodiscard]] FaceSplit<S> split(const PointWeights<S>& at, std::size_t face) const noexcept {
     const Face<S>& f = faces_[face];
-    out.rows = f.corners;
-    for (std::size_t k = 0; k < f.corners; ++k)
-      out.row[k] = &weights_[f.weights + k * f.count + (first - f.first)];
-    const S share_here = share(at, face);
-    if (share_here > S(0)) split(at, f, share_here, out);
+    FaceSplit<S> split;
+    split.corners = f.corners;
+    split.share = share(at, face);
+    if (!(split.share > S(0))) return split;
+    for (std::size_t k = 0; k < f.corners; ++k) {
+      split.P[k] = at.weight[f.corner[k]];
+      split.per_P[k] = S(1) / (std::max)(split.P[k], p_.fade);
+      split.lift[k] = (std::max)(p_.fade - split.P[k], S(0)) * split.per_P[k];
+    }
+    return split;
   }
+  /// Weights L of the face's slots at its first corner, then at the next, `Face::count` each; a block past the end may be read.
+  [[nodiscard]] const S* weights(std::size_t face) const noexcept { return &weights_[faces_[face].weights]; }
 
  private:
-  PALPATE_FLATTEN void split(const PointWeights<S>& at, const Face<S>& f, S share_here,
-                             WeightBlock<S>& out) const noexcept {
-    using Lanes = detail::Lanes<S>;
-    std::array<S, max_face_corners> P, per_P, lift;
-    for (std::size_t k = 0; k < f.corners; ++k) {
-      P[k] = at.weight[f.corner[k]];
-      per_P[k] = S(1) / (std::max)(P[k], p_.fade);
-      lift[k] = (std::max)(p_.fade - P[k], S(0));
-    }
-    S* const mu = out.storage[f.corners].value;
-    for (std::size_t i = 0; i < block_size; i += detail::lanes<S>) {
-      Lanes most = Lanes::Constant(share_here);
-      for (std::size_t k = 0; k < f.corners; ++k)
-        most = most.min((detail::load_lanes(out.row[k] + i) + lift[k]) * per_P[k]);
-      Lanes sum = Lanes::Constant((std::numeric_limits<S>::min)());  // never divides by zero
-      for (std::size_t k = 0; k < f.corners; ++k) {
-        const Lanes left = (detail::load_lanes(out.row[k] + i) - most * P[k]).max(S(0));
-        detail::store_lanes(out.storage[k].value + i, left);
-        sum += left;
-      }
-      const Lanes scale = (S(1) - most) / sum;
-      for (std::size_t k = 0; k < f.corners; ++k) {
-        S* const left = out.storage[k].value + i;
-        detail::store_lanes<S>(left, detail::load_lanes(left) * scale);
-      }
-      detail::store_lanes(mu + i, most);
-    }
-    for (std::size_t k = 0; k < f.corners; ++k) out.row[k] = out.storage[k].value;
-    out.row[f.corners] = mu;
-    out.rows = f.corners + 1;
-  }
-
   static Vec3<S> mean(std::span<const ExtremalPoint<S>> points) {
     Vec3<S> sum = Vec3<S>::Zero();
     for (const ExtremalPoint<S>& point : points) sum += point.position;
@@ -322,7 +298,7 @@ class FacePartition {
       for (const std::uint32_t i : members[f])
         face.radius = (std::max)(face.radius, (mesh.vertices[i] - face.centre).norm());
     }
-    // The last block reads to its end.
+    // The last group of registers reads past the end.
     weights_.resize(weights_.size() + block_size);
     for (auto* arrays : {&rest_, &normal_}) {
       for (std::vector<S>& array : *arrays) array.resize(n + block_size);

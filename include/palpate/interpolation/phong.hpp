@@ -3,37 +3,17 @@
 
 /// @file  Phong displacement: the paper's interpolation (V.A.2).
 
-#include <palpate/core/inverse_root.hpp>
+#include <palpate/core/lane_group.hpp>
+#include <palpate/core/lane_sine.hpp>
 #include <palpate/interpolation/concept.hpp>
+#include <palpate/interpolation/face_weights.hpp>
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace palpate {
-
-namespace detail {
-
-/// (-1)^k / (K (K+1) ... (K+2k-1)).
-template <int K>
-[[nodiscard]] constexpr double series_factor(int k) noexcept {
-  double factor = 1;
-  for (int j = 1; j <= k; ++j) factor /= -(K + 2 * j - 2) * (K + 2 * j - 1);
-  return factor;
-}
-/// sum_k series_factor<K>(k) x^k: Taylor's series of cos y (K = 1) and (sin y)/y (K = 2) in x = y^2, for |y| <= pi/2 to
-/// 2 ulp of 1. Without a branch, so that loops vectorise.
-template <Real S, int K, int First = 0>
-[[nodiscard]] inline S alternating_series(S x) noexcept {
-  constexpr int last = sizeof(S) == 4 ? 6 : 10;
-  constexpr S factor = static_cast<S>(series_factor<K>(First));
-  if constexpr (First == last)
-    return factor;
-  else
-    return factor + x * alternating_series<S, K, First + 1>(x);
-}
-
-}  // namespace detail
 
 /// Magnitude |u| and displacement angle theta (between u and the outward normal) of the corners, interpolated
 /// linearly over each face: an extension of Phong shading.
@@ -109,104 +89,91 @@ class PhongInterpolation {
     return detail::same_values(partition_, a, b, face);
   }
 
-  void add(const Load& load, std::size_t face, std::size_t first, const S* scale, S* x, S* y,
-           S* z) const noexcept {
+  PALPATE_FLATTEN void add(const Load& load, std::size_t face, std::size_t first, std::size_t count,
+                           const S* scale, S* x, S* y, S* z) const noexcept {
+    using namespace detail;
     if (!load.active) return;
     const Face<S>& f = partition_.faces()[face];
-    WeightBlock<S> w;
-    partition_.weights(load.at, face, first, w);
-
-    Block<S> m, g, theta, tx, ty, tz, stretch, missing;
-    sum(load, f, w, magnitude, m, g, theta);
-    sum(load, f, w, tangent, tx, ty, tz);
-    Block<S> less;  // by how much the contact's weight is reduced
-    const bool reduced = scale != nullptr && w.rows > f.corners;
-    if (reduced) {
-      const S* PALPATE_RESTRICT const mu = w.row[f.corners];
-      for (std::size_t i = 0; i < block_size; ++i) less[i] = mu[i] * (scale[i] - S(1));
-      const S D = load.contact[magnitude];
-      for (std::size_t i = 0; i < block_size; ++i) m[i] += less[i] * D;
-    }
-    const S* PALPATE_RESTRICT const nx = partition_.normal(0) + first;
-    const S* PALPATE_RESTRICT const ny = partition_.normal(1) + first;
-    const S* PALPATE_RESTRICT const nz = partition_.normal(2) + first;
-    direction(nx, ny, nz, g, theta, tx, ty, tz, stretch, missing);
-    if (detail::largest(missing) > S(0)) {
-      Block<S> u[3];
-      sum(load, f, w, linear, u[0], u[1], u[2]);
-      S* const out[3] = {x, y, z};
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const S D = load.contact[linear + axis];
-        if (reduced) {
-          for (std::size_t i = 0; i < block_size; ++i) u[axis][i] += less[i] * D;
-        }
-        S* PALPATE_RESTRICT const o = out[axis];
-        for (std::size_t i = 0; i < block_size; ++i) o[i] += missing[i] * u[axis][i];
+    using Terms = FaceTerms<S, terms>;
+    Terms value;
+    for (std::size_t k = 0; k < f.corners; ++k) value.corner[k] = Terms::row(load.corner[f.corner[k]].data());
+    value.contact = Terms::row(load.contact.data());
+    // Only the contact's displacement is reduced; its direction counts in full.
+    const auto reduced = [&](const auto& w, std::size_t i) PALPATE_INLINE_LAMBDA {
+      return scale == nullptr ? w.contact() : w.contact() * V(scale + i);
+    };
+    // Short loops: their results are far apart, and a long loop would wait for them.
+    Sums sum;
+    with_weights(partition_, load.at, face, first, [&](const auto& weights) PALPATE_INLINE_LAMBDA {
+      for (std::size_t i = 0; i < count; i += V::lanes) {
+        const auto w = weights.at(i);
+        w.sum(value, magnitude, reduced(w, i)).store(&sum[magnitude][i]);
+        unrolled<linear - lent>(
+            [&](std::size_t k) PALPATE_INLINE_LAMBDA { w.sum(value, lent + k).store(&sum[lent + k][i]); });
       }
-      for (std::size_t i = 0; i < block_size; ++i) m[i] *= S(1) - missing[i];
-    }
-    add_displacements(nx, ny, nz, m, theta, stretch, tx, ty, tz, x, y, z);
+    });
+    Block<S> missing;
+    turn(count, sum, missing);
+    if (!add_directed(first, count, sum, missing, x, y, z)) return;
+    with_weights(partition_, load.at, face, first, [&](const auto& weights) PALPATE_INLINE_LAMBDA {
+      for (std::size_t i = 0; i < count; i += V::lanes) {
+        const V part(&missing[i]);
+        if (!any_positive(part)) continue;
+        const auto w = weights.at(i);
+        const V contact = reduced(w, i);
+        add_group(x + i, part * w.sum(value, linear, contact));
+        add_group(y + i, part * w.sum(value, linear + 1, contact));
+        add_group(z + i, part * w.sum(value, linear + 2, contact));
+      }
+    });
   }
 
  private:
+  using V = detail::LaneGroup<S>;
   static constexpr std::size_t magnitude = 0, lent = 1, angle = 2, tangent = 3,
                                linear = 6;  // places in Corner
+  using Sums = std::array<Block<S>, linear>;
 
-  // Sums of three neighbouring terms.
-  static void sum(const Load& load, const Face<S>& f, const WeightBlock<S>& w, std::size_t term, Block<S>& x,
-                  Block<S>& y, Block<S>& z) noexcept {
-    std::array<const S*, max_face_corners + 1> value;
-    for (std::size_t k = 0; k < f.corners; ++k) value[k] = load.corner[f.corner[k]].data() + term;
-    value[f.corners] = load.contact.data() + term;
-    detail::sum_rows<false>(w, value, x.value, y.value, z.value);
-  }
-
-  // Sums of terms to cosine (in theta), tangential vectors and their stretch, and what is missing of the sine. One
-  // short loop after the other: their results are far apart, and a long loop would wait for them.
-  static void direction(const S* PALPATE_RESTRICT nx, const S* PALPATE_RESTRICT ny,
-                        const S* PALPATE_RESTRICT nz, Block<S>& PALPATE_RESTRICT g,
-                        Block<S>& PALPATE_RESTRICT theta, Block<S>& PALPATE_RESTRICT tx,
-                        Block<S>& PALPATE_RESTRICT ty, Block<S>& PALPATE_RESTRICT tz,
-                        Block<S>& PALPATE_RESTRICT stretch, Block<S>& PALPATE_RESTRICT missing) noexcept {
-    constexpr S tiny = (std::numeric_limits<S>::min)(), most_stretch = S(4);
-    Block<S> length2, sine;
-    for (std::size_t i = 0; i < block_size; ++i)
-      g[i] = g[i] > tiny ? g[i] : tiny;  // nothing lent: m is 0 as well
-    for (std::size_t i = 0; i < block_size; ++i) g[i] = S(1) / g[i];
-    for (std::size_t i = 0; i < block_size; ++i) {
-      const S turned = theta[i] * g[i] - S(1.57079632679489661923132169163975144L), square = turned * turned;
-      sine[i] = detail::alternating_series<S, 1>(square);
-      theta[i] = -turned * detail::alternating_series<S, 2>(square);  // from here on: cosine
-    }
-    for (std::size_t i = 0; i < block_size; ++i) {
-      const S across = tx[i] * nx[i] + ty[i] * ny[i] + tz[i] * nz[i];
-      tx[i] = (tx[i] - nx[i] * across) * g[i];
-      ty[i] = (ty[i] - ny[i] * across) * g[i];
-      tz[i] = (tz[i] - nz[i] * across) * g[i];
-      length2[i] = tx[i] * tx[i] + ty[i] * ty[i] + tz[i] * tz[i];
-    }
-    for (std::size_t i = 0; i < block_size; ++i) {
-      const S per_length = detail::inverse_root(length2[i]), wanted = sine[i] * per_length;
-      // Nothing, not even a rounding, where less than `most_stretch` is enough.
-      const S lacking = sine[i] - most_stretch * length2[i] * per_length;
-      missing[i] = lacking > S(0) ? lacking : S(0);
-      stretch[i] = wanted < most_stretch ? wanted : most_stretch;
+  // Sums of g and g theta become 1 / g and cos theta.
+  static PALPATE_INLINE void turn(std::size_t count, Sums& sum, Block<S>& sine) noexcept {
+    using namespace detail;
+    constexpr S tiny = (std::numeric_limits<S>::min)(), quarter = std::numbers::pi_v<S> / S(2);
+    for (std::size_t i = 0; i < count; i += V::lanes) {
+      // Where nothing is lent nothing moves either.
+      const V per_g = S(1) / larger(V(&sum[lent][i]), V(tiny));
+      V s, c;
+      sine_and_cosine<S>(V(&sum[angle][i]) * per_g - quarter, s, c);
+      per_g.store(&sum[lent][i]);
+      (-s).store(&sum[angle][i]);
+      c.store(&sine[i]);
     }
   }
 
-  static void add_displacements(const S* PALPATE_RESTRICT nx, const S* PALPATE_RESTRICT ny,
-                                const S* PALPATE_RESTRICT nz, const Block<S>& PALPATE_RESTRICT m,
-                                const Block<S>& PALPATE_RESTRICT cosine,
-                                const Block<S>& PALPATE_RESTRICT stretch, const Block<S>& PALPATE_RESTRICT tx,
-                                const Block<S>& PALPATE_RESTRICT ty, const Block<S>& PALPATE_RESTRICT tz,
-                                S* PALPATE_RESTRICT x, S* PALPATE_RESTRICT y,
-                                S* PALPATE_RESTRICT z) noexcept {
-    for (std::size_t i = 0; i < block_size; ++i) {
-      const S along = m[i] * cosine[i], aside = m[i] * stretch[i];
-      x[i] += along * nx[i] + aside * tx[i];
-      y[i] += along * ny[i] + aside * ty[i];
-      z[i] += along * nz[i] + aside * tz[i];
+  // Adds (1 - e) |u| (cos theta n + sin theta t). In: sin theta; out: what is missing of it, e. Is anything?
+  PALPATE_INLINE bool add_directed(std::size_t first, std::size_t count, const Sums& sum, Block<S>& sine,
+                                   S* x, S* y, S* z) const noexcept {
+    using namespace detail;
+    const S *const nx = partition_.normal(0) + first, *const ny = partition_.normal(1) + first,
+                   *const nz = partition_.normal(2) + first;
+    V most_missing{};
+    for (std::size_t i = 0; i < count; i += V::lanes) {
+      const V n[3] = {V(nx + i), V(ny + i), V(nz + i)};
+      V t[3] = {V(&sum[tangent][i]), V(&sum[tangent + 1][i]), V(&sum[tangent + 2][i])};  // times g
+      const V along_normal = t[0] * n[0] + t[1] * n[1] + t[2] * n[2];
+      unrolled<3>([&](std::size_t k) PALPATE_INLINE_LAMBDA { t[k] = t[k] - along_normal * n[k]; });
+      const V square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2], per_length = inverse_root(square);
+      const V wanted = V(&sine[i]), most = S(4) * V(&sum[lent][i]);
+      // Nothing, not even a rounding, where less than 4 |t| is enough.
+      const V missing = larger(wanted - most * (square * per_length), V{});
+      const V size = V(&sum[magnitude][i]) * (S(1) - missing);
+      const V along = size * V(&sum[angle][i]), aside = size * smaller(wanted * per_length, most);
+      missing.store(&sine[i]);
+      most_missing = larger(most_missing, missing);
+      add_group(x + i, along * n[0] + aside * t[0]);
+      add_group(y + i, along * n[1] + aside * t[1]);
+      add_group(z + i, along * n[2] + aside * t[2]);
     }
+    return any_positive(most_missing);
   }
 
   static Corner terms_of(const Vec3<S>& u, const Vec3<S>& normal, S largest) noexcept {

@@ -3,7 +3,7 @@
 
 /// @file  Interpolation of least bending energy: no creases between faces.
 
-#include <palpate/core/inverse_root.hpp>
+#include <palpate/core/lane_group.hpp>
 #include <palpate/interpolation/concept.hpp>
 #include <palpate/interpolation/triharmonic.hpp>
 
@@ -44,7 +44,7 @@ class SmoothInterpolation {
   explicit SmoothInterpolation(FacePartition<S> partition)
       : partition_(std::move(partition)), spline_(places(partition_)) {
     const std::size_t n = partition_.size();
-    kernels_.resize(spline_.size() * n + block_size);  // the last block reads to its end
+    kernels_.resize(spline_.size() * n + block_size);  // the last group reads past the end
     for (std::vector<S>& array : reduced_) array.resize(n + block_size);
     for (std::size_t i = 0; i < n; ++i) {
       const Vec3<double> x =
@@ -107,61 +107,62 @@ class SmoothInterpolation {
     return a.place == b.place && a.moving == b.moving && a.affine == b.affine && a.contact == b.contact;
   }
 
-  void add(const Load& load, std::size_t, std::size_t first, const S* scale, S* x, S* y,
-           S* z) const noexcept {
+  PALPATE_FLATTEN void add(const Load& load, std::size_t, std::size_t first, std::size_t count,
+                           const S* scale, S* x, S* y, S* z) const noexcept {
     if (!load.active) return;
-    Block<S> moving;
-    const S px = load.place.x(), py = load.place.y(), pz = load.place.z();
-    const S* PALPATE_RESTRICT const vx = &reduced_[0][first];
-    const S* PALPATE_RESTRICT const vy = &reduced_[1][first];
-    const S* PALPATE_RESTRICT const vz = &reduced_[2][first];
-    for (std::size_t i = 0; i < block_size; ++i) {
-      const S dx = vx[i] - px, dy = vy[i] - py, dz = vz[i] - pz, square = dx * dx + dy * dy + dz * dz;
-      moving[i] = square * square * detail::inverse_root(square);
-    }
-    S* const out[3] = {x, y, z};
-    Block<S> u;
-    std::array<S, max_extremal_points> factor;
-    for (int axis = 0; axis < 3; ++axis) {
-      for (std::size_t j = 0; j < spline_.size(); ++j) factor[j] = load.kernel[j][axis];
-      evaluate(first,
-               {load.affine[0][axis], load.affine[1][axis], load.affine[2][axis], load.affine[3][axis]},
-               factor.data(), load.moving[axis], moving.value, u.value);
-      S* PALPATE_RESTRICT const o = out[axis];
-      for (std::size_t i = 0; i < block_size; ++i) o[i] += u[i];
-    }
-    if (scale == nullptr) return;
-    Block<S> own;
-    evaluate(first, load.own_affine, load.own.data(), load.own_moving, moving.value, own.value);
-    for (int axis = 0; axis < 3; ++axis) {
-      S* PALPATE_RESTRICT const o = out[axis];
-      const S D = load.contact[axis];
-      for (std::size_t i = 0; i < block_size; ++i) o[i] += own[i] * (scale[i] - S(1)) * D;
+    const Terms terms(load, spline_.size());
+    for (std::size_t i = 0; i < count; i += V::lanes) {
+      if (scale == nullptr) {
+        V u[3];
+        evaluate(load, terms, first + i, u);
+        add_group(x + i, u[0]), add_group(y + i, u[1]), add_group(z + i, u[2]);
+      } else {
+        V u[4];
+        evaluate(load, terms, first + i, u);
+        const V less = u[3] * (V(scale + i) - S(1));
+        add_group(x + i, u[0] + less * load.contact.x());
+        add_group(y + i, u[1] + less * load.contact.y());
+        add_group(z + i, u[2] + less * load.contact.z());
+      }
     }
   }
 
  private:
-  // out = the function with these coefficients.
-  void evaluate(std::size_t first, const std::array<S, 4>& affine, const S* factor, S moving_factor,
-                const S* PALPATE_RESTRICT moving, S* PALPATE_RESTRICT out) const noexcept {
-    const S* PALPATE_RESTRICT const vx = &reduced_[0][first];
-    const S* PALPATE_RESTRICT const vy = &reduced_[1][first];
-    const S* PALPATE_RESTRICT const vz = &reduced_[2][first];
-    const S b = affine[0], ax = affine[1], ay = affine[2], az = affine[3];
-    for (std::size_t i = 0; i < block_size; ++i)
-      out[i] = b + vx[i] * ax + vy[i] * ay + vz[i] * az + moving[i] * moving_factor;
-    const std::size_t stride = partition_.size();
-    std::size_t j = 0;
-    for (; j + 2 <= spline_.size(); j += 2) {  // two at a time: half the passes over `out`
-      const S* PALPATE_RESTRICT const k = &kernels_[j * stride + first];
-      const S* PALPATE_RESTRICT const l = &kernels_[(j + 1) * stride + first];
-      const S c = factor[j], d = factor[j + 1];
-      for (std::size_t i = 0; i < block_size; ++i) out[i] += k[i] * c + l[i] * d;
+  using V = detail::LaneGroup<S>;
+
+  struct Terms {  // coefficients of u_x, u_y, u_z and H
+    using Row = std::array<detail::LaneFactor<S>, 4>;
+    std::array<Row, 4> affine;
+    Row moving;
+    std::array<Row, max_extremal_points> kernel;
+
+    Terms(const Load& load, std::size_t kernels) noexcept {
+      for (std::size_t a = 0; a < 4; ++a) affine[a] = row(load.affine[a], load.own_affine[a]);
+      moving = row(load.moving, load.own_moving);
+      for (std::size_t j = 0; j < kernels; ++j) kernel[j] = row(load.kernel[j], load.own[j]);
     }
-    for (; j < spline_.size(); ++j) {
-      const S* PALPATE_RESTRICT const k = &kernels_[j * stride + first];
-      const S c = factor[j];
-      for (std::size_t i = 0; i < block_size; ++i) out[i] += k[i] * c;
+    static Row row(const Vec3<S>& u, S own) noexcept {
+      using detail::lane_factor;
+      return {lane_factor(u.x()), lane_factor(u.y()), lane_factor(u.z()), lane_factor(own)};
+    }
+  };
+
+  // The first N functions at the group of slots from `slot` on.
+  template <std::size_t N>
+  PALPATE_INLINE void evaluate(const Load& load, const Terms& terms, std::size_t slot,
+                               V (&u)[N]) const noexcept {
+    using detail::unrolled;
+    const V vx(&reduced_[0][slot]), vy(&reduced_[1][slot]), vz(&reduced_[2][slot]);
+    const V dx = vx - load.place.x(), dy = vy - load.place.y(), dz = vz - load.place.z(),
+            square = dx * dx + dy * dy + dz * dz, moving = square * square * inverse_root(square);
+    unrolled<N>([&](std::size_t k) PALPATE_INLINE_LAMBDA {
+      u[k] = V(terms.affine[0][k]) + vx * terms.affine[1][k] + vy * terms.affine[2][k] +
+             vz * terms.affine[3][k] + moving * terms.moving[k];
+    });
+    const S* kernel = &kernels_[slot];
+    for (std::size_t j = 0; j < spline_.size(); ++j, kernel += partition_.size()) {
+      const V here(kernel);
+      unrolled<N>([&](std::size_t k) PALPATE_INLINE_LAMBDA { u[k] = u[k] + here * terms.kernel[j][k]; });
     }
   }
 

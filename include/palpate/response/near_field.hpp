@@ -86,10 +86,6 @@ inline constexpr std::uint32_t lane_size = entries<Lane>;
 [[nodiscard]] PALPATE_INLINE Lane lane_at(const float* from) noexcept { return load_vector<Lane>(from); }
 
 template <std::floating_point S>
-[[nodiscard]] PALPATE_INLINE S larger(S a, S b) noexcept {
-  return a > b ? a : b;
-}
-template <std::floating_point S>
 [[nodiscard]] PALPATE_INLINE S root(S x) noexcept {
   return std::sqrt(x);
 }
@@ -102,8 +98,8 @@ template <std::floating_point S>
   return std::atan2(y, x);
 }
 template <class V>
-  requires(!std::floating_point<V>)
-[[nodiscard]] PALPATE_INLINE V first_quadrant_angle(const V& y, const V& x) noexcept {
+requires(!std::floating_point<V>) [[nodiscard]] PALPATE_INLINE V
+    first_quadrant_angle(const V& y, const V& x) noexcept {
   const V t = smaller(x, y) / larger(x, y), t2 = t * t;
   const V p = t * (0.99997726f +
                    t2 * (-0.33262347f +

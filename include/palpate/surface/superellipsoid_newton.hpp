@@ -100,7 +100,7 @@ class SuperellipsoidNewton {
     foot.u = across_.of(foot.z[0]);
     foot.v = across_.of(foot.z[1]);
     foot.w = along_.of(foot.z[2]);
-    foot.s = larger_of(V(foot.u * foot.z[0] * foot.z[0] + foot.v * foot.z[1] * foot.z[1]), all_of<V>(least));
+    foot.s = larger(V(foot.u * foot.z[0] * foot.z[0] + foot.v * foot.z[1] * foot.z[1]), all_of<V>(least));
     foot.A = over_.of(foot.s);
   }
 
@@ -164,7 +164,7 @@ class SuperellipsoidNewton {
             {g[0] + Hx + step.Hxx * more[0] + step.Hxy * more[1] + Tx,
              g[1] + Hy + step.Hxy * more[0] + step.Hyy * more[1] + Ty, g[2] + Hz + step.Hzz * more[2] + Tz},
             length(more),
-            larger_of(larger_of(beyond(e1, z[0]), beyond(e2, z[1])), beyond(e3, z[2]))};
+            larger(larger(beyond(e1, z[0]), beyond(e2, z[1])), beyond(e3, z[2]))};
   }
 
   /// From x by the ray and by first steps, until those of all shallow lanes are at most `enough`, or `most` of them; the last
@@ -219,7 +219,7 @@ class SuperellipsoidNewton {
   // Nothing in the units of the axes, but its square stays a normal number; in double, where finish() is used, products of three too.
   template <class V>
   [[nodiscard]] static PALPATE_INLINE V off_zero(const V& z) noexcept {
-    return larger_of(z, all_of<V>(sizeof(S) == sizeof(float) ? S(1e-18L) : S(1e-20L)));
+    return larger(z, all_of<V>(sizeof(S) == sizeof(float) ? S(1e-18L) : S(1e-20L)));
   }
 
   template <class V>
@@ -245,7 +245,7 @@ class SuperellipsoidNewton {
   }
   template <class V>
   [[nodiscard]] static PALPATE_INLINE V length(const Axes<V>& d) noexcept {
-    return larger_of(larger_of(absolute(d[0]), absolute(d[1])), absolute(d[2]));
+    return larger(larger(absolute(d[0]), absolute(d[1])), absolute(d[2]));
   }
 
   Vec3<S> axes_, per_;

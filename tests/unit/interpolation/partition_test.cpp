@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "contract/interpolation.hpp"
 
+#include <palpate/interpolation/face_weights.hpp>
 #include <palpate/interpolation/linear.hpp>
 
 #include <doctest/doctest.h>
@@ -23,14 +24,20 @@ std::vector<std::vector<S>> all_weights(const FacePartition<S>& part, const Poin
   std::vector<std::vector<S>> result(part.size(), std::vector<S>(part.points().size() + 1, S(0)));
   for (std::size_t f = 0; f < part.faces().size(); ++f) {
     const Face<S>& face = part.faces()[f];
-    for (std::size_t first = face.first; first < face.first + face.count; first += block_size) {
-      WeightBlock<S> w;
-      part.weights(at, f, first, w);
-      for (std::size_t i = 0; i < block_size && first + i < face.first + face.count; ++i) {
-        for (std::size_t k = 0; k < face.corners; ++k) result[first + i][face.corner[k]] = w.row[k][i];
-        if (w.rows > face.corners) result[first + i].back() = w.row[face.corners][i];
+    detail::with_weights(part, at, f, face.first, [&](const auto& weights) {
+      using Group = detail::LaneGroup<S>;
+      for (std::size_t i = 0; i < face.count; i += Group::lanes) {
+        const auto w = weights.at(i);
+        const auto keep = [&](const Group& group, std::size_t column) {
+          std::array<S, Group::lanes> entry;
+          group.store(entry.data());
+          for (std::size_t j = 0; j < Group::lanes && i + j < face.count; ++j)
+            result[face.first + i + j][column] = entry[j];
+        };
+        for (std::size_t k = 0; k < face.corners; ++k) keep(w.corner(k), face.corner[k]);
+        keep(w.contact(), part.points().size());
       }
-    }
+    });
   }
   return result;
 }

@@ -138,16 +138,3 @@ TEST_CASE("where all corners move alike along their normals, Phong inflates and 
   }
   CHECK(least < 0.9e-3);
 }
-
-TEST_CASE_TEMPLATE("series: sine and cosine, and the inverse root, against long double", S, float, double) {
-  for (int i = 0; i <= 2000; ++i) {
-    const S y = S(-1.5707963267948966 + 3.1415926535897931 * i / 2000);
-    CHECK_ABSOLUTE((detail::alternating_series<S, 1>(y * y)), std::cos(static_cast<long double>(y)),
-                   ulps<S>(2));
-    CHECK_ABSOLUTE((y * detail::alternating_series<S, 2>(y * y)), std::sin(static_cast<long double>(y)),
-                   ulps<S>(2));
-    const S x = static_cast<S>(std::pow(10.0L, (i - 1000) / 1000.0L * (sizeof(S) == 4 ? 30 : 290)));
-    CHECK_RELATIVE(detail::inverse_root(x), 1 / std::sqrt(static_cast<long double>(x)), ulps<S>(4));
-  }
-  CHECK(is_finite(detail::inverse_root(S(0))));
-}
