@@ -192,7 +192,8 @@ template <class V>
   return smaller(larger(a, all_of<V>(least)), all_of<V>(most));
 }
 template <class V>
-requires(!std::floating_point<V>) [[nodiscard]] PALPATE_INLINE V magnitude(const V& a) noexcept {
+  requires(!std::floating_point<V>)
+[[nodiscard]] PALPATE_INLINE V magnitude(const V& a) noexcept {
   return std::bit_cast<V>(std::bit_cast<BitsOf<V>>(a) & 0x7fffffffu);
 }
 /// Entries from, from + 1, .. of a register.
@@ -207,8 +208,8 @@ template <class V>
 
 /// The same for wider registers.
 template <class V>
-requires(entries<V> > entries<Float4>) PALPATE_INLINE
-    void store_interleaved(unsigned char* to, const V& x, const V& y, const V& z) noexcept {
+  requires(entries<V> > entries<Float4>)
+PALPATE_INLINE void store_interleaved(unsigned char* to, const V& x, const V& y, const V& z) noexcept {
   for (std::size_t from = 0; from < entries<V>; from += entries<Float4>)
     store_interleaved(to + 3 * sizeof(float) * from, four_of(x, from), four_of(y, from), four_of(z, from));
 }

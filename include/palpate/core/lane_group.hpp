@@ -17,10 +17,11 @@
 namespace palpate::detail {
 
 /// Four registers, or two of AVX-512's, whose stores are dear: more do not stay in registers. Arithmetic entry by entry.
-template <Real S>
+/// The register is part of the name, so that objects compiled with other vector flags do not take this one's functions for theirs.
+template <Real S, class Register = LaneRegister<S>>
 class LaneGroup {
  public:
-  using V = LaneRegister<S>;
+  using V = Register;
   static constexpr std::size_t registers = sizeof(V) == 64 ? 2 : 4, lanes = registers * register_lanes<S>;
 
   LaneGroup() = default;  ///< LaneGroup{}: zeros

@@ -12,6 +12,8 @@
 #include <palpate/interpolation/neighbourhood.hpp>
 
 #include <algorithm>
+#include <array>
+#include <limits>
 #include <utility>
 
 namespace palpate {
@@ -121,30 +123,30 @@ class DisplacementField {
 
   using V = detail::LaneGroup<S>;
 
-  struct Extent {  // extremes of each lane
-    std::array<V, 3> lower, upper;
+  struct Extent {  // extremes of each lane: as many as any vector flags give
+    using Lanes = std::array<S, 32>;
+    static_assert(V::lanes <= std::tuple_size_v<Lanes>);
+    std::array<Lanes, 3> lower, upper;
     Extent() noexcept {
-      lower.fill(V((std::numeric_limits<S>::max)()));
-      upper.fill(V(std::numeric_limits<S>::lowest()));
+      for (Lanes& of : lower) of.fill((std::numeric_limits<S>::max)());
+      for (Lanes& of : upper) of.fill(std::numeric_limits<S>::lowest());
     }
     PALPATE_INLINE void take(const Block<S> (&x)[3], std::size_t count) noexcept {
-      detail::unrolled<3>([&](std::size_t axis) PALPATE_INLINE_LAMBDA {
-        V low = lower[axis], high = upper[axis];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        V low(lower[axis].data()), high(upper[axis].data());
         for (std::size_t i = 0; i < count; i += V::lanes) {
           const V at(&x[axis][i]);
           low = smaller(low, at);
           high = larger(high, at);
         }
-        lower[axis] = low, upper[axis] = high;
-      });
+        low.store(lower[axis].data());
+        high.store(upper[axis].data());
+      }
     }
     void write(Moved<S>& moved) const noexcept {
-      std::array<S, V::lanes> entry;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        lower[axis].store(entry.data());
-        moved.lower[static_cast<int>(axis)] = *std::min_element(entry.begin(), entry.end());
-        upper[axis].store(entry.data());
-        moved.upper[static_cast<int>(axis)] = *std::max_element(entry.begin(), entry.end());
+        moved.lower[static_cast<int>(axis)] = *std::min_element(lower[axis].begin(), lower[axis].end());
+        moved.upper[static_cast<int>(axis)] = *std::max_element(upper[axis].begin(), upper[axis].end());
       }
     }
   };

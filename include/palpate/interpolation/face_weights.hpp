@@ -20,7 +20,7 @@ struct FaceTerms {
   std::array<Row, max_face_corners> corner;
   Row contact;
 
-  static Row row(const S* from) noexcept {
+  static PALPATE_INLINE Row row(const S* from) noexcept {
     Row row;
     for (std::size_t term = 0; term < Terms; ++term) row[term] = lane_factor(from[term]);
     return row;
@@ -35,7 +35,7 @@ struct LaneSplit {
   LaneFactor<S> share;
   Row P, per_P, lift;
 
-  explicit LaneSplit(const FaceSplit<S>& split) noexcept
+  PALPATE_INLINE explicit LaneSplit(const FaceSplit<S>& split) noexcept
       : corners(split.corners), share(lane_factor(split.share)) {
     for (std::size_t k = 0; k < corners; ++k)
       P[k] = lane_factor(split.P[k]), per_P[k] = lane_factor(split.per_P[k]),
@@ -127,7 +127,7 @@ PALPATE_INLINE void with_weights(const FacePartition<S>& partition, const PointW
   const Face<S>& f = partition.faces()[face];
   const FaceSplit<S> split = partition.split(at, face);
   const S* const weight = partition.weights(face) + (first - f.first);
-  const auto with_corners = [&]<bool Split>(std::bool_constant<Split>) {
+  const auto with_corners = [&]<bool Split>(std::bool_constant<Split>) PALPATE_INLINE_LAMBDA {
     if (f.corners == 3)
       work(FaceWeights<S, 3, Split>(weight, f.count, split));
     else if (f.corners == 4)

@@ -136,12 +136,12 @@ class SmoothInterpolation {
     Row moving;
     std::array<Row, max_extremal_points> kernel;
 
-    Terms(const Load& load, std::size_t kernels) noexcept {
+    PALPATE_INLINE Terms(const Load& load, std::size_t kernels) noexcept {
       for (std::size_t a = 0; a < 4; ++a) affine[a] = row(load.affine[a], load.own_affine[a]);
       moving = row(load.moving, load.own_moving);
       for (std::size_t j = 0; j < kernels; ++j) kernel[j] = row(load.kernel[j], load.own[j]);
     }
-    static Row row(const Vec3<S>& u, S own) noexcept {
+    static PALPATE_INLINE Row row(const Vec3<S>& u, S own) noexcept {
       using detail::lane_factor;
       return {lane_factor(u.x()), lane_factor(u.y()), lane_factor(u.z()), lane_factor(own)};
     }

@@ -98,8 +98,8 @@ template <std::floating_point S>
   return std::atan2(y, x);
 }
 template <class V>
-requires(!std::floating_point<V>) [[nodiscard]] PALPATE_INLINE V
-    first_quadrant_angle(const V& y, const V& x) noexcept {
+  requires(!std::floating_point<V>)
+[[nodiscard]] PALPATE_INLINE V first_quadrant_angle(const V& y, const V& x) noexcept {
   const V t = smaller(x, y) / larger(x, y), t2 = t * t;
   const V p = t * (0.99997726f +
                    t2 * (-0.33262347f +
