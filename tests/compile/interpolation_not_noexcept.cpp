@@ -18,8 +18,8 @@ struct Stiff {
                Load&) const noexcept {}
   bool moves(const Load&, std::size_t) const noexcept { return false; }
   bool same(const Load&, const Load&, std::size_t) const noexcept { return true; }
-  void add(const Load&, std::size_t, std::size_t, std::size_t, const float*, float*, float*,
-           float*) const MAY_THROW {}
+  void add(const Load&, std::size_t, std::size_t, std::size_t, const float*,
+           const palpate::Lists<const float>&, const palpate::Lists<float>&) const MAY_THROW {}
   const palpate::FacePartition<float>* faces = nullptr;
 };
 

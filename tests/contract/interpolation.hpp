@@ -21,13 +21,17 @@ template <Interpolation I>
   using S = typename I::Scalar;
   const auto& partition = interpolation.partition();
   std::vector<Vec3<S>> field(partition.size());
+  std::fill(field.begin(), field.end(), Vec3<S>::Zero());
   for (std::size_t f = 0; f < partition.faces().size(); ++f) {
     const Face<S>& face = partition.faces()[f];
-    for (std::size_t first = face.first; first < face.first + face.count; first += block_size) {
-      const std::size_t count = std::min(block_size, face.first + face.count - first);
+    if (!interpolation.moves(load, f)) continue;
+    for (std::size_t from = 0; from < face.count; from += block_size) {
+      const std::size_t count = std::min(block_size, face.count - from);
       Block<S> u[3] = {};
-      interpolation.add(load, f, first, count, nullptr, u[0].value, u[1].value, u[2].value);
-      for (std::size_t i = 0; i < count; ++i) field[first + i] = Vec3<S>(u[0][i], u[1][i], u[2][i]);
+      interpolation.add(load, f, from, count, nullptr, {u[0].value, u[1].value, u[2].value},
+                        {u[0].value, u[1].value, u[2].value});
+      for (std::size_t i = 0; i < count; ++i)
+        field[face.first + from + i] = Vec3<S>(u[0][i], u[1][i], u[2][i]);
     }
   }
   return field;

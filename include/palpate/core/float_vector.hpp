@@ -192,14 +192,21 @@ template <class V>
   return smaller(larger(a, all_of<V>(least)), all_of<V>(most));
 }
 template <class V>
-  requires(!std::floating_point<V>)
-[[nodiscard]] PALPATE_INLINE V magnitude(const V& a) noexcept {
+requires(!std::floating_point<V>) [[nodiscard]] PALPATE_INLINE V magnitude(const V& a) noexcept {
   return std::bit_cast<V>(std::bit_cast<BitsOf<V>>(a) & 0x7fffffffu);
 }
-/// Entries from, from + 1, .. of a register.
-template <class V>
-[[nodiscard]] PALPATE_INLINE Float4 four_of(const V& x, std::size_t from) noexcept {
-  return load_vector<Float4>(reinterpret_cast<const float*>(&x) + from);
+/// Entries From .. From + 3 of a register.
+template <std::size_t From, class V>
+[[nodiscard]] PALPATE_INLINE Float4 four_of(const V& x) noexcept {
+  return __builtin_shufflevector(x, x, From, From + 1, From + 2, From + 3);
+}
+/// work(0), work(4) .. up to a register's last four, with constants for four_of.
+template <class V, class Work>
+PALPATE_INLINE void each_four(const Work& work) noexcept {
+  [&]<std::size_t... k>(std::index_sequence<k...>) PALPATE_INLINE_LAMBDA {
+    (work(std::integral_constant<std::size_t, 4 * k>{}), ...);
+  }
+  (std::make_index_sequence<entries<V> / entries<Float4>>{});
 }
 [[nodiscard]] PALPATE_INLINE float least_of(Float4 a) noexcept {
   const Float4 two = smaller(a, __builtin_shufflevector(a, a, 2, 3, 0, 1));
@@ -208,10 +215,11 @@ template <class V>
 
 /// The same for wider registers.
 template <class V>
-  requires(entries<V> > entries<Float4>)
-PALPATE_INLINE void store_interleaved(unsigned char* to, const V& x, const V& y, const V& z) noexcept {
-  for (std::size_t from = 0; from < entries<V>; from += entries<Float4>)
-    store_interleaved(to + 3 * sizeof(float) * from, four_of(x, from), four_of(y, from), four_of(z, from));
+requires(entries<V> > entries<Float4>) PALPATE_INLINE
+    void store_interleaved(unsigned char* to, const V& x, const V& y, const V& z) noexcept {
+  each_four<V>([&](auto from) PALPATE_INLINE_LAMBDA {
+    store_interleaved(to + 3 * sizeof(float) * from, four_of<from>(x), four_of<from>(y), four_of<from>(z));
+  });
 }
 #if defined(__AVX512F__)
 /// Six permutations of whole registers instead of 24 of quarters.
@@ -236,12 +244,11 @@ PALPATE_INLINE void store_interleaved(unsigned char* to, const WideRegister& x, 
 /// Lowers `least`, entry by entry, to those of x, four by four.
 template <class V>
 PALPATE_INLINE void take_least(Float4& least, const V& x) noexcept {
-  for (std::size_t from = 0; from < entries<V>; from += entries<Float4>)
-    least = smaller(four_of(x, from), least);
+  each_four<V>([&](auto from) PALPATE_INLINE_LAMBDA { least = smaller(four_of<from>(x), least); });
 }
 #if defined(__AVX__)
 [[nodiscard]] PALPATE_INLINE float least_of(FloatRegister a) noexcept {
-  return least_of(smaller(four_of(a, 0), four_of(a, 4)));
+  return least_of(smaller(four_of<0>(a), four_of<4>(a)));
 }
 #endif
 

@@ -27,10 +27,13 @@ class VertexWriter {
     std::memcpy(at + sizeof(T), &y, sizeof(T));
     std::memcpy(at + 2 * sizeof(T), &z, sizeof(T));
   }
-  /// To vertices number first, first + 1, .. first + 3.
-  PALPATE_INLINE void put_row(std::size_t first, Float4 x, Float4 y, Float4 z) const noexcept {
-    if (is_packed()) return store_interleaved(base_ + stride_ * first, x, y, z);
-    put_apart([first](std::size_t k) { return first + k; }, x, y, z);
+  /// To vertices number first, first + 1 ..; more than four: into a packed buffer.
+  template <class V>
+  PALPATE_INLINE void put_row(std::size_t first, const V& x, const V& y, const V& z) const noexcept {
+    if (entries < V >> entries<Float4> || is_packed())
+      return store_interleaved(base_ + stride_ * first, x, y, z);
+    if constexpr (entries<V> == entries<Float4>)
+      put_apart([first](std::size_t k) { return first + k; }, x, y, z);
   }
   /// To vertices number vertex(0) .. vertex(3).
   template <class Vertex>
@@ -59,26 +62,50 @@ class VertexWriter {
       if (is_packed() &&
           vertex(entries<V> - 1) - first == entries<V> - 1)  // as they ascend: none is left out
         return store_interleaved(base_ + stride_ * first, x, y, z);
-      for (std::uint32_t from = 0; from < entries<V>; from += entries<Float4>)
-        put_four([&vertex, from](std::uint32_t k) { return vertex(from + k); }, four_of(x, from),
-                 four_of(y, from), four_of(z, from));
+      each_four<V>([&](auto from) PALPATE_INLINE_LAMBDA {
+        put_four([&vertex, from](std::uint32_t k) { return vertex(from + k); }, four_of<from>(x),
+                 four_of<from>(y), four_of<from>(z));
+      });
     }
   }
-  /// x[i], y[i], z[i] to vertex number vertex(i), for all i < count; they ascend.
-  template <Real S, class Vertex>
-  PALPATE_INLINE void put_all(std::size_t count, const Vertex& vertex, const S* x, const S* y,
+  /// x[i], y[i], z[i] to vertex number first + i, for all i < count.
+  template <Real S>
+  PALPATE_INLINE void put_run(std::size_t first, std::size_t count, const S* x, const S* y,
                               const S* z) const noexcept {
-    std::size_t i = 0;
     if constexpr (sizeof(S) == sizeof(float)) {
-      const auto put_while_whole = [&]<class V>(std::type_identity<V>) {
-        for (; i + entries<V> <= count; i += entries<V>)
-          put_register([&vertex, i](std::uint32_t k) { return vertex(i + k); }, load_vector<V>(x + i),
-                       load_vector<V>(y + i), load_vector<V>(z + i));
+      const auto put = [&]<class V>(std::type_identity<V>, std::size_t i) PALPATE_INLINE_LAMBDA {
+        put_row(first + i, load_vector<V>(x + i), load_vector<V>(y + i), load_vector<V>(z + i));
       };
-      put_while_whole(std::type_identity<WideRegister>{});
-      put_while_whole(std::type_identity<Float4>{});
+      // The last register over some of the one before it.
+      const auto put_all = [&]<class V>(std::type_identity<V> type) PALPATE_INLINE_LAMBDA {
+        std::size_t i = 0;
+        for (; i + entries<V> < count; i += entries<V>) put(type, i);
+        put(type, count - entries<V>);
+      };
+      if (is_packed() && count >= entries<WideRegister>) return put_all(std::type_identity<WideRegister>{});
+      if (count >= entries<Float4>) return put_all(std::type_identity<Float4>{});
     }
-    for (; i < count; ++i) put(vertex(i), static_cast<T>(x[i]), static_cast<T>(y[i]), static_cast<T>(z[i]));
+    for (std::size_t i = 0; i < count; ++i)
+      put(first + i, static_cast<T>(x[i]), static_cast<T>(y[i]), static_cast<T>(z[i]));
+  }
+  /// x[i], y[i], z[i] to vertex number vertex[i], for all i < count. run[i] says how many from i on follow each other in the buffer,
+  /// itself among them; it may say less.
+  template <Real S>
+  PALPATE_INLINE void put_runs(std::size_t count, const std::uint32_t* vertex, const std::uint8_t* run,
+                               const S* x, const S* y, const S* z) const noexcept {
+    for (std::size_t i = 0; i < count;) {
+      const std::size_t length = run[i] < count - i ? run[i] : count - i;
+      if constexpr (sizeof(S) == sizeof(float)) {
+        if (length < entries<WideRegister> && i + entries<Float4> <= count) {
+          put_four([at = vertex + i](std::size_t k) { return at[k]; }, load_vector<Float4>(x + i),
+                   load_vector<Float4>(y + i), load_vector<Float4>(z + i));
+          i += entries<Float4>;
+          continue;
+        }
+      }
+      put_run(vertex[i], length, x + i, y + i, z + i);
+      i += length;
+    }
   }
 
  private:

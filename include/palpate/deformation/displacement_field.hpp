@@ -73,9 +73,11 @@ class DisplacementField {
     const bool with_normals = p_.normals && out.normals != nullptr;
     for (std::size_t f = 0; f < dirty_.size(); ++f) {
       const Face<S>& face = part.faces()[f];
-      put(face.first, face.count, part.rest(0) + face.first, part.rest(1) + face.first,
-          part.rest(2) + face.first, out);
-      if (p_.normals) normals_.place_at_rest(part, face);
+      put(face, 0, face.count, part.rest_from(face, 0), out);
+      if (p_.normals) {
+        normals_.place(0, face.count, part.rest_from(face, 0));
+        normals_.placed(f);
+      }
       if (with_normals) normals_.write_in_row(part, f, out);
     }
     if (with_normals) normals_.write_apart(part, dirty_, out);
@@ -99,8 +101,9 @@ class DisplacementField {
       dirty_[f] = changed(f) ? 1 : 0;
       if (!dirty_[f]) continue;
       const Face<S>& face = partition().faces()[f];
-      for (std::size_t first = face.first; first < face.first + face.count; first += block_size)
-        write_block(f, first, (std::min)(block_size, face.first + face.count - first), extent, out);
+      for (std::size_t from = 0; from < face.count; from += block_size)
+        write_block(f, from, (std::min)(block_size, face.count - from), extent, out);
+      if (p_.normals) normals_.placed(f);
       if (with_normals) normals_.write_in_row(partition(), f, out);
       moved.vertices += face.count;
     }
@@ -131,11 +134,11 @@ class DisplacementField {
       for (Lanes& of : lower) of.fill((std::numeric_limits<S>::max)());
       for (Lanes& of : upper) of.fill(std::numeric_limits<S>::lowest());
     }
-    PALPATE_INLINE void take(const Block<S> (&x)[3], std::size_t count) noexcept {
+    PALPATE_INLINE void take(const Lists<const S>& x, std::size_t count) noexcept {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         V low(lower[axis].data()), high(upper[axis].data());
         for (std::size_t i = 0; i < count; i += V::lanes) {
-          const V at(&x[axis][i]);
+          const V at(x[axis] + i);
           low = smaller(low, at);
           high = larger(high, at);
         }
@@ -160,11 +163,11 @@ class DisplacementField {
       return less > S(0) && (place - face.centre).squaredNorm() < reach * reach;
     }
     // 1 - (1 - w) b(r) at the vertices of a block.
-    PALPATE_INLINE void scale(const S* x, const S* y, const S* z, std::size_t count, S* out) const noexcept {
+    PALPATE_INLINE void scale(const Lists<const S>& rest, std::size_t count, S* out) const noexcept {
       const S px = place.x(), py = place.y(), pz = place.z(), per_square = S(1) / (radius * radius),
               most = less;
       for (std::size_t i = 0; i < count; i += V::lanes) {
-        const V dx = V(x + i) - px, dy = V(y + i) - py, dz = V(z + i) - pz;
+        const V dx = V(rest[0] + i) - px, dy = V(rest[1] + i) - py, dz = V(rest[2] + i) - pz;
         const V inside = larger(S(1) - (dx * dx + dy * dy + dz * dz) * per_square, V{});
         (S(1) - most * inside * inside).store(out + i);
       }
@@ -205,38 +208,42 @@ class DisplacementField {
     return false;
   }
 
-  // Slots of one face: their vertices ascend.
+  // `count` vertices of a face, from its slot number `from` on, are at `x`.
   template <Real T>
-  PALPATE_INLINE void put(std::size_t first, std::size_t count, const S* x, const S* y, const S* z,
+  PALPATE_INLINE void put(const Face<S>& face, std::size_t from, std::size_t count, const Lists<const S>& x,
                           const VertexBuffer<T>& out) const noexcept {
+    const std::size_t slot = face.first + from;
     detail::VertexWriter<T>(out.positions, out.position_stride)
-        .put_all(
-            count, [at = partition().order().data() + first](std::size_t i) { return at[i]; }, x, y, z);
+        .put_runs(count, partition().order().data() + slot, partition().runs().data() + slot, x[0], x[1],
+                  x[2]);
   }
 
   template <Real T>
-  PALPATE_FLATTEN void write_block(std::size_t f, std::size_t first, std::size_t count, Extent& extent,
+  PALPATE_FLATTEN void write_block(std::size_t f, std::size_t from, std::size_t count, Extent& extent,
                                    const VertexBuffer<T>& out) noexcept {
-    const FacePartition<S>& part = partition();
-    Block<S> x[3], scale;
-    for (int axis = 0; axis < 3; ++axis) {
-      const S* const rest = part.rest(axis) + first;
-      for (std::size_t i = 0; i < count; i += V::lanes) V(rest + i).store(&x[axis][i]);
+    const Face<S>& face = partition().faces()[f];
+    const Lists<const S> rest = partition().rest_from(face, from);
+    Block<S> moved[3], scale;
+    Lists<S> to{moved[0].value, moved[1].value, moved[2].value};
+    bool placed = false;  // where normals are made from
+    if constexpr (std::same_as<S, float>) {
+      if (p_.normals)
+        to = {normals_.axis(0) + from, normals_.axis(1) + from, normals_.axis(2) + from}, placed = true;
     }
+    const Lists<const S> there{to[0], to[1], to[2]};
+    bool is_moved = false;
     for (std::size_t c = 0; c < active_; ++c) {
       if (!interpolation_.moves(loads_[c], f)) continue;
-      const bool dented = dents_[c].touches(part.faces()[f]);
-      if (dented)
-        dents_[c].scale(part.rest(0) + first, part.rest(1) + first, part.rest(2) + first, count, scale.value);
-      interpolation_.add(loads_[c], f, first, count, dented ? scale.value : nullptr, x[0].value, x[1].value,
-                         x[2].value);
+      const bool dented = dents_[c].touches(face);
+      if (dented) dents_[c].scale(rest, count, scale.value);
+      interpolation_.add(loads_[c], f, from, count, dented ? scale.value : nullptr, is_moved ? there : rest,
+                         to);
+      is_moved = true;
     }
-    for (std::size_t i = count; i % V::lanes != 0; ++i) {
-      for (Block<S>& of : x) of[i] = of[0];  // not vertices of this block: no part in the box
-    }
-    extent.take(x, count);
-    put(first, count, x[0].value, x[1].value, x[2].value, out);
-    if (p_.normals) normals_.place(part.faces()[f], first, count, x[0].value, x[1].value, x[2].value);
+    const Lists<const S>& at = is_moved ? there : rest;
+    extent.take(at, count);
+    put(face, from, count, at, out);
+    if (p_.normals && !(placed && is_moved)) normals_.place(from, count, at);
   }
 
   static constexpr const char* name = "DisplacementField";

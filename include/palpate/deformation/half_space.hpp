@@ -270,7 +270,10 @@ class HalfSpaceDeformation {
       else
         for (std::size_t v = 0; v < n; ++v) out[v] = x[v] + moves[v] * u[v];
     }
-    if (p_.normals) normals_.places().set_row(0, 0, n, now_[0].data(), now_[1].data(), now_[2].data());
+    if (p_.normals) {
+      normals_.places().set_row(0, n, now_[0].data(), now_[1].data(), now_[2].data());
+      normals_.places().pack(0);
+    }
   }
 
   [[nodiscard]] static PALPATE_INLINE Lane lane_at(const float* from) noexcept {
@@ -360,9 +363,7 @@ class HalfSpaceDeformation {
   template <Real T>
   void store(const VertexBuffer<T>& out) const noexcept {
     detail::VertexWriter<T>(out.positions, out.position_stride)
-        .put_all(
-            moves_.size(), [](std::size_t v) { return static_cast<std::uint32_t>(v); }, now_[0].data(),
-            now_[1].data(), now_[2].data());
+        .put_run(0, moves_.size(), now_[0].data(), now_[1].data(), now_[2].data());
     if (p_.normals && out.normals != nullptr) normals_.write(out);
   }
 

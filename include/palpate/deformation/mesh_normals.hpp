@@ -16,10 +16,10 @@ class MeshNormals {
   MeshNormals() = default;
   MeshNormals(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertices)
       : normals_(VertexRings(triangles, vertices)),
-        places_(vertices, normals_.packed_reads(vertices)),
+        places_(std::array{VertexRun{0, vertices}}, normals_.packed_reads(vertices)),
         rest_(vertices) {}
 
-  /// To be filled by the caller.
+  /// To be filled by the caller: all vertices are one run.
   [[nodiscard]] VertexPlaces& places() noexcept { return places_; }
   /// The places are those at rest. Set-up only.
   void keep_rest() noexcept {

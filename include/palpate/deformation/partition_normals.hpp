@@ -21,8 +21,8 @@ namespace palpate {
 /// Unit normals of a FacePartition's vertices, by slot; one whose triangles have collapsed has the partition's own normal.
 /// A face that moves changes the normals of its vertices and of their neighbours in other faces.
 ///
-/// `place` a face's vertices, then `write_in_row` those that need no other face's, while its places are in the first cache;
-/// `write_apart` the others when all faces that move are there.
+/// Put a face's vertices where `axis` says or `place` them, and say `placed`; then `write_in_row` those that need no other face's, while
+/// its places are in the first cache; `write_apart` the others when all faces that move are there.
 template <Real S>
 class PartitionNormals {
  public:
@@ -48,7 +48,7 @@ class PartitionNormals {
         face_of[slot] = f;
     const VertexRings rings(by_slot, order.size());
     std::vector<std::array<std::uint32_t, 2>> around;  // face, slot: of other faces, next to this one
-    std::size_t longest = 0;
+    std::vector<VertexRun> runs;
     for (const Face<S>& face : faces) {
       std::vector<std::uint32_t> inside(face.count);
       std::iota(inside.begin(), inside.end(), static_cast<std::uint32_t>(face.first));
@@ -56,7 +56,8 @@ class PartitionNormals {
       for (const std::uint32_t slot : inside)
         for (const std::uint32_t other : rings[slot])
           if (face_of[other] != face_of[slot]) around.push_back({face_of[other], other});
-      inside_.push_back(normals_.add(rings, inside, {face.first, face.count}));
+      runs.push_back({face.first, face.count});
+      inside_.push_back(normals_.add(rings, inside, runs.back()));
       std::sort(around.begin(), around.end());
       around.erase(std::unique(around.begin(), around.end()), around.end());
       rim_start_.push_back(rim_.size());
@@ -66,28 +67,29 @@ class PartitionNormals {
         for (; k < around.size() && around[k][0] == f; ++k) slots.push_back(around[k][1]);
         rim_.push_back({f, normals_.add(rings, slots)});
       }
-      longest = (std::max)(longest, face.count);
     }
     rim_start_.push_back(rim_.size());
-    places_ = VertexPlaces(longest, normals_.packed_reads(order.size()));
-    for (const Face<S>& face : faces) place_at_rest(partition, face);
+    places_ = VertexPlaces(runs, normals_.packed_reads(order.size()));
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      place(0, faces[f].count, partition.rest_from(faces[f], 0));
+      placed(f);
+    }
   }
 
-  /// Where `count` of a face's vertices are now, from slot `first` on [m].
-  PALPATE_INLINE void place(const Face<S>& face, std::size_t first, std::size_t count, const S* x, const S* y,
-                            const S* z) noexcept {
-    places_.set_row(first - face.first, first, count, x, y, z);
+  /// Where the coordinates of the face to come are put, in float, on a cache line [m].
+  [[nodiscard]] float* axis(std::size_t i) noexcept { return places_.axis(i); }
+  /// Where `count` of its vertices are now, from its slot number `from` on [m].
+  PALPATE_INLINE void place(std::size_t from, std::size_t count, const Lists<const S>& at) noexcept {
+    places_.set_row(from, count, at[0], at[1], at[2]);
   }
-  PALPATE_INLINE void place_at_rest(const FacePartition<S>& partition, const Face<S>& face) noexcept {
-    place(face, face.first, face.count, partition.rest(0) + face.first, partition.rest(1) + face.first,
-          partition.rest(2) + face.first);
-  }
+  /// It was face f, and all of its vertices are there.
+  void placed(std::size_t f) noexcept { places_.pack(f); }
 
   /// Of face f's vertices those that need no other face's, right after its vertices have been placed.
   template <Real T>
   PALPATE_FLATTEN void write_in_row(const FacePartition<S>& partition, std::size_t f,
                                     const VertexBuffer<T>& out) const noexcept {
-    normals_.each_in_row(inside_[f], places_, at_rest(partition), writer(partition, out));
+    normals_.each_in_row(inside_[f], places_, at_rest(partition, f), writer(partition, out));
   }
   /// Of the faces that moved, moved[f] != 0, the others, and their neighbours in faces that did not.
   template <Real T>
@@ -95,10 +97,11 @@ class PartitionNormals {
                                    const VertexBuffer<T>& out) const noexcept {
     for (std::size_t f = 0; f < moved.size(); ++f) {
       if (!moved[f]) continue;
-      normals_.each_apart(inside_[f], places_, at_rest(partition), writer(partition, out));
+      normals_.each_apart(inside_[f], places_, at_rest(partition, f), writer(partition, out));
       for (std::size_t k = rim_start_[f]; k < rim_start_[f + 1]; ++k)
         if (!moved[rim_[k].face])
-          normals_.each_apart(rim_[k].vertices, places_, at_rest(partition), writer(partition, out));
+          normals_.each_apart(rim_[k].vertices, places_, at_rest(partition, rim_[k].face),
+                              writer(partition, out));
     }
   }
 
@@ -108,16 +111,18 @@ class PartitionNormals {
     VertexNormals::Group vertices;
   };
 
-  [[nodiscard]] static auto at_rest(const FacePartition<S>& partition) noexcept {
-    return [&partition](std::size_t slot) {
-      const auto normal = [&](int axis) { return static_cast<float>(partition.normal(axis)[slot]); };
+  [[nodiscard]] static auto at_rest(const FacePartition<S>& partition, std::size_t f) noexcept {
+    return [&partition, &face = partition.faces()[f]](std::size_t slot) {
+      const auto normal = [&](int axis) {
+        return static_cast<float>(partition.normal(face, axis)[slot - face.first]);
+      };
       return Packed3{normal(0), normal(1), normal(2)};
     };
   }
   template <Real T>
   [[nodiscard]] static auto writer(const FacePartition<S>& partition, const VertexBuffer<T>& out) noexcept {
     return [to = detail::VertexWriter<T>(out.normals, out.normal_stride), order = partition.order().data()](
-               const auto& slot, const auto& x, const auto& y, const auto& z) {
+               const auto& slot, const auto& x, const auto& y, const auto& z) PALPATE_INLINE_LAMBDA {
       to.put_register([&](std::uint32_t k) { return order[slot(k)]; }, x, y, z);
     };
   }

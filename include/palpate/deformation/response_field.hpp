@@ -55,7 +55,8 @@ class ResponseFieldDeformation {
     each_at_rest([&rest](std::size_t v, float x, float y, float z) {
       rest[0][v] = x, rest[1][v] = y, rest[2][v] = z;
     });
-    normals_.places().set_row(0, 0, rest[0].size(), rest[0].data(), rest[1].data(), rest[2].data());
+    normals_.places().set_row(0, rest[0].size(), rest[0].data(), rest[1].data(), rest[2].data());
+    normals_.places().pack(0);
     normals_.keep_rest();
   }
 

@@ -87,14 +87,10 @@ class VertexRings {
 /// In float, whatever the scalar: a place 0.1 m from the origin is known to 4 nm, and a normal between edges of 1 mm to
 /// 1e-5 rad; no display shows more.
 ///
-/// Sixteen or eight vertices in a row whose rings are the same but for a shift by one, and in one run of places, are done
-/// coordinate by coordinate, as most are in a mesh laid out in rows; the others by fours with rings of one size, wherever they are.
+/// Eight vertices or more in a row whose rings are the same but for a shift by one, and in one run of places, are done coordinate by
+/// coordinate, as most are in a mesh laid out in rows; the others by fours with rings of one size, wherever they are.
 class VertexNormals {
  public:
-  /// Vertices that follow each other, and whose coordinates do in VertexPlaces.
-  struct Run {
-    std::size_t first, count;
-  };
   /// Vertices that are done together.
   struct Group {
     std::uint32_t row_begin = 0, row_end = 0, four_begin = 0, four_end = 0;
@@ -109,26 +105,16 @@ class VertexNormals {
   }
   /// Makes a group of vertices, in ascending order, ready. Set-up only. `run`: the one that is in VertexPlaces when the group's turn
   /// comes; without it only packed places are read.
-  Group add(const VertexRings& rings, const std::vector<std::uint32_t>& vertices, const Run& run = {}) {
+  Group add(const VertexRings& rings, const std::vector<std::uint32_t>& vertices, const VertexRun& run = {}) {
     const Group before = all();
     std::vector<std::uint32_t> others;
-    // How far a row of `count` that takes in vertex i begins before it, among those already done: of it at least two are new.
-    const auto back_from = [&](std::size_t i, std::size_t count) {
-      const std::size_t most = (std::min)(i, count - 2);
-      std::size_t back = 0;
-      while (back <= most &&
-             !(i - back + count <= vertices.size() && is_row(rings, &vertices[i - back], count, run)))
-        ++back;
-      return back <= most ? back : count;
-    };
     for (std::size_t i = 0; i < vertices.size();) {
-      std::size_t count = most_in_row, back = back_from(i, count);
-      if (count - back <= least_in_row) count = least_in_row, back = back_from(i, count);
-      if (back < count) {
-        const std::uint32_t v = vertices[i - back];
+      const std::size_t count = row_from(rings, std::span(vertices).subspan(i), run);
+      if (count >= least_in_row) {
+        const std::uint32_t v = vertices[i];
         rows_.push_back(
             {v, static_cast<std::uint32_t>(count), list(rings[v], 1, run.first), size_of(rings[v])});
-        i += count - back;
+        i += count;
       } else {
         others.push_back(vertices[i++]);
       }
@@ -195,7 +181,7 @@ class VertexNormals {
     std::uint32_t ring, size;  // where the first one's neighbours' places are listed; the others follow
   };
   static constexpr float collapsed = (std::numeric_limits<float>::min)();  // square of an area
-  static constexpr std::uint32_t most_in_row = 16, least_in_row = 8, floats = sizeof(Packed3) / sizeof(float);
+  static constexpr std::uint32_t least_in_row = 8, floats = sizeof(Packed3) / sizeof(float);
 
   [[nodiscard]] static std::uint32_t size_of(std::span<const std::uint32_t> ring) {
     return static_cast<std::uint32_t>(ring.size());
@@ -206,18 +192,21 @@ class VertexNormals {
       rings_.push_back(unit * (neighbour - static_cast<std::uint32_t>(from)));
     return begin;
   }
-  [[nodiscard]] static bool is_row(const VertexRings& rings, const std::uint32_t* vertex, std::size_t count,
-                                   const Run& run) {
-    const auto first = rings[vertex[0]];
-    for (const std::uint32_t neighbour : first)
-      if (neighbour < run.first || neighbour + count > run.first + run.count) return false;
-    for (std::uint32_t k = 1; k < count; ++k) {
-      const auto next = rings[vertex[k]];
-      if (vertex[k] != vertex[0] + k || next.size() != first.size()) return false;
-      for (std::size_t j = 0; j < first.size(); ++j)
-        if (next[j] != first[j] + k) return false;
+  // How many from the first vertex on have the same ring but for a shift by one, all of it in the run.
+  [[nodiscard]] static std::size_t row_from(const VertexRings& rings, std::span<const std::uint32_t> vertices,
+                                            const VertexRun& run) {
+    const auto first = rings[vertices[0]];
+    const auto [lowest, highest] = std::minmax_element(first.begin(), first.end());
+    if (*lowest < run.first) return 0;
+    std::uint32_t k = 0;
+    for (; k < vertices.size() && *highest + k < run.first + run.count; ++k) {
+      const auto next = rings[vertices[k]];
+      if (vertices[k] != vertices[0] + k ||
+          !std::equal(first.begin(), first.end(), next.begin(), next.end(),
+                      [k](std::uint32_t a, std::uint32_t b) { return a + k == b; }))
+        break;
     }
-    return true;
+    return k;
   }
 
   // 2 A in the order z, x, y.
@@ -320,11 +309,15 @@ class VertexNormals {
   PALPATE_INLINE void areas_of(const Row& row, const VertexPlaces& places, const Work& work) const noexcept {
     const std::uint32_t* const ring = rings_.data() + row.ring;
     const float *const px = places.axis(0), *const py = places.axis(1), *const pz = places.axis(2);
-    for (std::uint32_t from = 0; from < row.count; from += detail::entries<V>) {
-      V x, y, z;
-      with_size(row.size, [&](auto size) { area(px + from, py + from, pz + from, ring, size, x, y, z); });
-      work([first = row.vertex + from](std::uint32_t k) { return first + k; }, x, y, z);
-    }
+    with_size(row.size, [&](auto size) {
+      const std::uint32_t last = row.count - detail::entries<V>;
+      for (std::uint32_t from = 0;; from = (std::min)(from + detail::entries<V>, last)) {
+        V x, y, z;
+        area(px + from, py + from, pz + from, ring, size, x, y, z);
+        work([first = row.vertex + from](std::uint32_t k) { return first + k; }, x, y, z);
+        if (from == last) break;  // over some of the register before it
+      }
+    });
   }
   template <class Work>
   PALPATE_INLINE void areas_apart(const Group& group, const VertexPlaces& places,

@@ -5,12 +5,13 @@
 
 #include <palpate/core/scalar.hpp>
 
+#include <array>
 #include <cstddef>
 
 namespace palpate {
 
 /// Vertices are worked on in blocks of at most this many, whose intermediate results stay in the first-level cache.
-inline constexpr std::size_t block_size = 128;
+inline constexpr std::size_t block_size = 256;
 
 /// One number per vertex of a block. What follows the block's last vertex in its LaneGroup is never used.
 template <Real S>
@@ -19,5 +20,9 @@ struct alignas(64) Block {
   [[nodiscard]] S& operator[](std::size_t i) noexcept { return value[i]; }
   [[nodiscard]] const S& operator[](std::size_t i) const noexcept { return value[i]; }
 };
+
+/// Where the vertices of a block are, coordinate by coordinate.
+template <class S>
+using Lists = std::array<S*, 3>;
 
 }  // namespace palpate

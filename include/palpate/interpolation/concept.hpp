@@ -79,12 +79,14 @@ concept HasSame = requires(const I& field, const typename I::Load& load, std::si
   noexcept->std::same_as<bool>;
 };
 
-/// Adds the field at `count` slots of the face from `first` on, at most `block_size`, to x, y, z [m]. `scale`, if not null,
-/// multiplies the contact's displacement per vertex (V.B). All four hold `block_size` entries.
+/// to = start + the field of a load that moves the face, at `count` of its slots from number `from` on, at most `block_size` [m]. `start`
+/// and `to` may be the same. `scale`, if not null, multiplies the contact's displacement per vertex (V.B). All lists are read and
+/// written in whole groups of registers (LaneGroup).
 template <class I>
-concept HasAdd = requires(const I& field, const typename I::Load& load, std::size_t face, std::size_t first,
-                          std::size_t count, const typename I::Scalar* scale, typename I::Scalar* x) {
-  { field.add(load, face, first, count, scale, x, x, x) }
+concept HasAdd = requires(const I& field, const typename I::Load& load, std::size_t face, std::size_t from,
+                          std::size_t count, const typename I::Scalar* scale,
+                          const Lists<const typename I::Scalar>& start, const Lists<typename I::Scalar>& to) {
+  { field.add(load, face, from, count, scale, start, to) }
   noexcept;
 };
 

@@ -119,21 +119,21 @@ class FaceWeights {
   LaneSplit<S> split_;
 };
 
-/// work(FaceWeights) with the weights from slot `first` of the face on: one type for triangles, one for quadrilaterals, one for
+/// work(FaceWeights) with the weights from slot number `from` of the face on: one type for triangles, one for quadrilaterals, one for
 /// others, split or not.
 template <Real S, class Work>
 PALPATE_INLINE void with_weights(const FacePartition<S>& partition, const PointWeights<S>& at,
-                                 std::size_t face, std::size_t first, const Work& work) noexcept {
+                                 std::size_t face, std::size_t from, const Work& work) noexcept {
   const Face<S>& f = partition.faces()[face];
   const FaceSplit<S> split = partition.split(at, face);
-  const S* const weight = partition.weights(face) + (first - f.first);
+  const S* const weight = partition.weights(f) + from;
   const auto with_corners = [&]<bool Split>(std::bool_constant<Split>) PALPATE_INLINE_LAMBDA {
     if (f.corners == 3)
-      work(FaceWeights<S, 3, Split>(weight, f.count, split));
+      work(FaceWeights<S, 3, Split>(weight, f.length, split));
     else if (f.corners == 4)
-      work(FaceWeights<S, 4, Split>(weight, f.count, split));
+      work(FaceWeights<S, 4, Split>(weight, f.length, split));
     else
-      work(FaceWeights<S, 0, Split>(weight, f.count, split));
+      work(FaceWeights<S, 0, Split>(weight, f.length, split));
   };
   if (split.share > S(0))
     with_corners(std::true_type{});

@@ -65,22 +65,21 @@ class LinearInterpolation {
     return detail::same_values(partition_, a, b, face);
   }
 
-  PALPATE_FLATTEN void add(const Load& load, std::size_t face, std::size_t first, std::size_t count,
-                           const S* scale, S* x, S* y, S* z) const noexcept {
-    if (!load.active) return;
+  PALPATE_FLATTEN void add(const Load& load, std::size_t face, std::size_t from, std::size_t count,
+                           const S* scale, const Lists<const S>& start, const Lists<S>& to) const noexcept {
+    using V = detail::LaneGroup<S>;
     const Face<S>& f = partition_.faces()[face];
     using Terms = detail::FaceTerms<S, 3>;
     Terms value;
     for (std::size_t k = 0; k < f.corners; ++k) value.corner[k] = Terms::row(load.corner[f.corner[k]].data());
     value.contact = Terms::row(load.contact.data());
-    detail::with_weights(partition_, load.at, face, first, [&](const auto& weights) PALPATE_INLINE_LAMBDA {
-      for (std::size_t i = 0; i < count; i += detail::LaneGroup<S>::lanes) {
+    detail::with_weights(partition_, load.at, face, from, [&](const auto& weights) PALPATE_INLINE_LAMBDA {
+      for (std::size_t i = 0; i < count; i += V::lanes) {
         const auto w = weights.at(i);
-        auto contact = w.contact();
-        if (scale != nullptr) contact = contact * decltype(contact)(scale + i);
-        detail::add_group(x + i, w.sum(value, 0, contact));
-        detail::add_group(y + i, w.sum(value, 1, contact));
-        detail::add_group(z + i, w.sum(value, 2, contact));
+        const V contact = scale == nullptr ? w.contact() : w.contact() * V(scale + i);
+        detail::unrolled<3>([&](std::size_t axis) PALPATE_INLINE_LAMBDA {
+          (V(start[axis] + i) + w.sum(value, axis, contact)).store(to[axis] + i);
+        });
       }
     });
   }

@@ -3,6 +3,7 @@
 
 /// @file  The surface cut into faces between its extremal points, and the weights of every display vertex (V.A.2).
 
+#include <palpate/core/aligned_list.hpp>
 #include <palpate/core/error.hpp>
 #include <palpate/core/vector.hpp>
 #include <palpate/interpolation/block.hpp>
@@ -27,9 +28,11 @@ inline constexpr std::size_t max_face_corners = 8;
 /// A face: a polygon of extremal points, and the run of sorted vertices ("slots") over it.
 template <Real S>
 struct Face {
-  std::size_t first = 0, count = 0;                      ///< slots first .. first + count - 1
-  std::size_t weights = 0;                               ///< where its weights start, corner by corner
-  std::size_t corners = 0;                               ///< 3 .. max_face_corners
+  std::size_t first = 0, count = 0;  ///< slots first .. first + count - 1
+  std::size_t row = 0;               ///< where its slots begin in an AlignedList of all faces
+  std::size_t length = 0;            ///< of its part there: count, in whole groups of registers
+  std::size_t weights = 0;           ///< where its weights start, corner by corner
+  std::size_t corners = 0;           ///< 3 .. max_face_corners
   std::array<std::uint32_t, max_face_corners> corner{};  ///< extremal points, counter-clockwise from outside
   std::uint64_t members = 0;                             ///< the same as bits
   Vec3<S> centre = Vec3<S>::Zero();                      ///< of a ball around its vertices [m]
@@ -108,14 +111,27 @@ class FacePartition {
   [[nodiscard]] std::size_t size() const noexcept { return order_.size(); }
   /// The mesh vertex in each slot.
   [[nodiscard]] std::span<const std::uint32_t> order() const noexcept { return order_; }
-  /// Undeformed coordinate `axis` of every slot [m]; a block past the end may be read.
-  [[nodiscard]] const S* rest(int axis) const noexcept {
-    return rest_[static_cast<std::size_t>(axis)].data();
+  /// How many slots from each one on follow each other in the mesh and are of its face, itself among them; at most 255.
+  [[nodiscard]] std::span<const std::uint8_t> runs() const noexcept { return runs_; }
+  /// Undeformed coordinate `axis` of the face's slots [m], on a cache line; the last one's again up to `Face::length`.
+  [[nodiscard]] const S* rest(const Face<S>& face, int axis) const noexcept {
+    return rest_[static_cast<std::size_t>(axis)].data() + face.row;
   }
-  /// Component `axis` of the undeformed unit normal of every slot; ditto.
-  [[nodiscard]] const S* normal(int axis) const noexcept {
-    return normal_[static_cast<std::size_t>(axis)].data();
+  /// The same from the face's slot number `from` on, all axes.
+  [[nodiscard]] PALPATE_INLINE Lists<const S> rest_from(const Face<S>& face,
+                                                        std::size_t from) const noexcept {
+    return {rest(face, 0) + from, rest(face, 1) + from, rest(face, 2) + from};
   }
+  /// Component `axis` of the undeformed unit normal of the face's slots; ditto.
+  [[nodiscard]] const S* normal(const Face<S>& face, int axis) const noexcept {
+    return normal_[static_cast<std::size_t>(axis)].data() + face.row;
+  }
+  /// Weights L of the face's slots at its corner number k; ditto. The next corner's begin `Face::length` further.
+  [[nodiscard]] const S* weights(const Face<S>& face, std::size_t k = 0) const noexcept {
+    return weights_.data() + face.weights + k * face.length;
+  }
+  /// Length of an AlignedList with an entry for each slot.
+  [[nodiscard]] std::size_t list_length() const noexcept { return faces_.back().row + faces_.back().length; }
   [[nodiscard]] const Params& params() const noexcept { return p_; }
 
   /// Face and weights of the surface point in the direction of `place` from the centre.
@@ -161,8 +177,6 @@ class FacePartition {
     }
     return split;
   }
-  /// Weights L of the face's slots at its first corner, then at the next, `Face::count` each; a block past the end may be read.
-  [[nodiscard]] const S* weights(std::size_t face) const noexcept { return &weights_[faces_[face].weights]; }
 
  private:
   static Vec3<S> mean(std::span<const ExtremalPoint<S>> points) {
@@ -274,34 +288,43 @@ class FacePartition {
       if (!at.valid) fail_at(name, "must not be the centre", "mesh vertex", i);
       members[at.face].push_back(static_cast<std::uint32_t>(i));
     }
-    for (auto* arrays : {&rest_, &normal_}) {
-      for (std::vector<S>& array : *arrays) array.reserve(n + block_size);
-    }
+    std::size_t slots = 0, row = 0, weights = 0;
     for (std::size_t f = 0; f < faces_.size(); ++f) {
       Face<S>& face = faces_[f];
-      face.first = order_.size();
+      face.first = slots, face.row = row, face.weights = weights;
       face.count = members[f].size();
-      face.weights = weights_.size();
-      weights_.resize(weights_.size() + face.corners * face.count);
-      for (std::size_t j = 0; j < face.count; ++j) {
-        const std::uint32_t i = members[f][j];
+      face.length = AlignedList<S>::padded(face.count);
+      slots += face.count, row += face.length, weights += face.corners * face.length;
+    }
+    weights_.resize(weights);
+    for (auto* lists : {&rest_, &normal_}) {
+      for (AlignedList<S>& list : *lists) list.resize(list_length());
+    }
+    order_.reserve(n);
+    for (std::size_t f = 0; f < faces_.size(); ++f) {
+      Face<S>& face = faces_[f];
+      order_.insert(order_.end(), members[f].begin(), members[f].end());
+      for (std::size_t j = 0; j < (face.count > 0 ? face.length : 0); ++j) {
+        const std::uint32_t i = members[f][(std::min)(j, face.count - 1)];
         const PointWeights<S> at = locate(mesh.vertices[i]);
-        order_.push_back(i);
         for (std::size_t k = 0; k < face.corners; ++k)
-          weights_[face.weights + k * face.count + j] = at.weight[face.corner[k]];
+          weights_[face.weights + k * face.length + j] = at.weight[face.corner[k]];
         for (std::size_t axis = 0; axis < 3; ++axis) {
-          rest_[axis].push_back(mesh.vertices[i][static_cast<int>(axis)]);
-          normal_[axis].push_back(normals[i][static_cast<int>(axis)]);
+          rest_[axis][face.row + j] = mesh.vertices[i][static_cast<int>(axis)];
+          normal_[axis][face.row + j] = normals[i][static_cast<int>(axis)];
         }
-        face.centre += mesh.vertices[i] / static_cast<S>(face.count);
       }
+      for (const std::uint32_t i : members[f]) face.centre += mesh.vertices[i] / static_cast<S>(face.count);
       for (const std::uint32_t i : members[f])
         face.radius = (std::max)(face.radius, (mesh.vertices[i] - face.centre).norm());
     }
-    // The last group of registers reads past the end.
-    weights_.resize(weights_.size() + block_size);
-    for (auto* arrays : {&rest_, &normal_}) {
-      for (std::vector<S>& array : *arrays) array.resize(n + block_size);
+    runs_.assign(n, 1);
+    for (const Face<S>& face : faces_) {
+      for (std::size_t j = face.count; j-- > 1;) {
+        const std::size_t slot = face.first + j - 1;
+        if (order_[slot + 1] == order_[slot] + 1)
+          runs_[slot] = static_cast<std::uint8_t>((std::min)(runs_[slot + 1] + 1, 255));
+      }
     }
   }
 
@@ -318,8 +341,9 @@ class FacePartition {
   std::vector<Face<S>> faces_;
   std::vector<Cone> cones_;
   std::vector<std::uint32_t> order_;
-  std::vector<S> weights_;
-  std::array<std::vector<S>, 3> rest_, normal_;
+  std::vector<std::uint8_t> runs_;
+  AlignedList<S> weights_;
+  std::array<AlignedList<S>, 3> rest_, normal_;
 };
 
 /// The same mesh with its vertices in the partition's order. A partition made from it has order()[i] = i, so that the

@@ -89,10 +89,9 @@ class PhongInterpolation {
     return detail::same_values(partition_, a, b, face);
   }
 
-  PALPATE_FLATTEN void add(const Load& load, std::size_t face, std::size_t first, std::size_t count,
-                           const S* scale, S* x, S* y, S* z) const noexcept {
+  PALPATE_FLATTEN void add(const Load& load, std::size_t face, std::size_t from, std::size_t count,
+                           const S* scale, const Lists<const S>& start, const Lists<S>& to) const noexcept {
     using namespace detail;
-    if (!load.active) return;
     const Face<S>& f = partition_.faces()[face];
     using Terms = FaceTerms<S, terms>;
     Terms value;
@@ -104,7 +103,7 @@ class PhongInterpolation {
     };
     // Short loops: their results are far apart, and a long loop would wait for them.
     Sums sum;
-    with_weights(partition_, load.at, face, first, [&](const auto& weights) PALPATE_INLINE_LAMBDA {
+    with_weights(partition_, load.at, face, from, [&](const auto& weights) PALPATE_INLINE_LAMBDA {
       for (std::size_t i = 0; i < count; i += V::lanes) {
         const auto w = weights.at(i);
         w.sum(value, magnitude, reduced(w, i)).store(&sum[magnitude][i]);
@@ -114,16 +113,16 @@ class PhongInterpolation {
     });
     Block<S> missing;
     turn(count, sum, missing);
-    if (!add_directed(first, count, sum, missing, x, y, z)) return;
-    with_weights(partition_, load.at, face, first, [&](const auto& weights) PALPATE_INLINE_LAMBDA {
+    if (!add_directed(f, from, count, sum, missing, start, to)) return;
+    with_weights(partition_, load.at, face, from, [&](const auto& weights) PALPATE_INLINE_LAMBDA {
       for (std::size_t i = 0; i < count; i += V::lanes) {
         const V part(&missing[i]);
         if (!any_positive(part)) continue;
         const auto w = weights.at(i);
         const V contact = reduced(w, i);
-        add_group(x + i, part * w.sum(value, linear, contact));
-        add_group(y + i, part * w.sum(value, linear + 1, contact));
-        add_group(z + i, part * w.sum(value, linear + 2, contact));
+        unrolled<3>([&](std::size_t axis) PALPATE_INLINE_LAMBDA {
+          add_group(to[axis] + i, part * w.sum(value, linear + axis, contact));
+        });
       }
     });
   }
@@ -150,11 +149,12 @@ class PhongInterpolation {
   }
 
   // Adds (1 - e) |u| (cos theta n + sin theta t). In: sin theta; out: what is missing of it, e. Is anything?
-  PALPATE_INLINE bool add_directed(std::size_t first, std::size_t count, const Sums& sum, Block<S>& sine,
-                                   S* x, S* y, S* z) const noexcept {
+  PALPATE_INLINE bool add_directed(const Face<S>& face, std::size_t from, std::size_t count, const Sums& sum,
+                                   Block<S>& sine, const Lists<const S>& start,
+                                   const Lists<S>& to) const noexcept {
     using namespace detail;
-    const S *const nx = partition_.normal(0) + first, *const ny = partition_.normal(1) + first,
-                   *const nz = partition_.normal(2) + first;
+    const S *const nx = partition_.normal(face, 0) + from, *const ny = partition_.normal(face, 1) + from,
+                   *const nz = partition_.normal(face, 2) + from;
     V most_missing{};
     for (std::size_t i = 0; i < count; i += V::lanes) {
       const V n[3] = {V(nx + i), V(ny + i), V(nz + i)};
@@ -169,9 +169,9 @@ class PhongInterpolation {
       const V along = size * V(&sum[angle][i]), aside = size * smaller(wanted * per_length, most);
       missing.store(&sine[i]);
       most_missing = larger(most_missing, missing);
-      add_group(x + i, along * n[0] + aside * t[0]);
-      add_group(y + i, along * n[1] + aside * t[1]);
-      add_group(z + i, along * n[2] + aside * t[2]);
+      unrolled<3>([&](std::size_t k) PALPATE_INLINE_LAMBDA {
+        (V(start[k] + i) + (along * n[k] + aside * t[k])).store(to[k] + i);
+      });
     }
     return any_positive(most_missing);
   }

@@ -43,17 +43,19 @@ class SmoothInterpolation {
 
   explicit SmoothInterpolation(FacePartition<S> partition)
       : partition_(std::move(partition)), spline_(places(partition_)) {
-    const std::size_t n = partition_.size();
-    kernels_.resize(spline_.size() * n + block_size);  // the last group reads past the end
-    for (std::vector<S>& array : reduced_) array.resize(n + block_size);
-    for (std::size_t i = 0; i < n; ++i) {
-      const Vec3<double> x =
-          spline_.reduced(Vec3<S>(partition_.rest(0)[i], partition_.rest(1)[i], partition_.rest(2)[i])
-                              .template cast<double>());
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        reduced_[axis][i] = static_cast<S>(x[static_cast<int>(axis)]);
-      for (std::size_t j = 0; j < spline_.size(); ++j)
-        kernels_[j * n + i] = static_cast<S>(TriharmonicSpline::kernel(x - spline_.sites()[j]));
+    const std::size_t n = partition_.list_length();
+    kernels_.resize(spline_.size() * n);
+    for (AlignedList<S>& list : reduced_) list.resize(n);
+    for (const Face<S>& face : partition_.faces()) {
+      for (std::size_t j = 0; j < face.length; ++j) {
+        Vec3<double> x;
+        for (int axis = 0; axis < 3; ++axis) x[axis] = static_cast<double>(partition_.rest(face, axis)[j]);
+        x = spline_.reduced(x);
+        for (std::size_t axis = 0; axis < 3; ++axis)
+          reduced_[axis][face.row + j] = static_cast<S>(x[static_cast<int>(axis)]);
+        for (std::size_t k = 0; k < spline_.size(); ++k)
+          kernels_[k * n + face.row + j] = static_cast<S>(TriharmonicSpline::kernel(x - spline_.sites()[k]));
+      }
     }
   }
 
@@ -107,22 +109,24 @@ class SmoothInterpolation {
     return a.place == b.place && a.moving == b.moving && a.affine == b.affine && a.contact == b.contact;
   }
 
-  PALPATE_FLATTEN void add(const Load& load, std::size_t, std::size_t first, std::size_t count,
-                           const S* scale, S* x, S* y, S* z) const noexcept {
-    if (!load.active) return;
+  PALPATE_FLATTEN void add(const Load& load, std::size_t face, std::size_t from, std::size_t count,
+                           const S* scale, const Lists<const S>& start, const Lists<S>& to) const noexcept {
+    const std::size_t first = partition_.faces()[face].row + from;
     const Terms terms(load, spline_.size());
     for (std::size_t i = 0; i < count; i += V::lanes) {
       if (scale == nullptr) {
         V u[3];
         evaluate(load, terms, first + i, u);
-        add_group(x + i, u[0]), add_group(y + i, u[1]), add_group(z + i, u[2]);
+        detail::unrolled<3>([&](std::size_t axis) PALPATE_INLINE_LAMBDA {
+          (V(start[axis] + i) + u[axis]).store(to[axis] + i);
+        });
       } else {
         V u[4];
         evaluate(load, terms, first + i, u);
         const V less = u[3] * (V(scale + i) - S(1));
-        add_group(x + i, u[0] + less * load.contact.x());
-        add_group(y + i, u[1] + less * load.contact.y());
-        add_group(z + i, u[2] + less * load.contact.z());
+        detail::unrolled<3>([&](std::size_t axis) PALPATE_INLINE_LAMBDA {
+          (V(start[axis] + i) + (u[axis] + less * load.contact[static_cast<int>(axis)])).store(to[axis] + i);
+        });
       }
     }
   }
@@ -147,20 +151,20 @@ class SmoothInterpolation {
     }
   };
 
-  // The first N functions at the group of slots from `slot` on.
+  // The first N functions at the group of slots from entry `at` of the lists on.
   template <std::size_t N>
-  PALPATE_INLINE void evaluate(const Load& load, const Terms& terms, std::size_t slot,
+  PALPATE_INLINE void evaluate(const Load& load, const Terms& terms, std::size_t at,
                                V (&u)[N]) const noexcept {
     using detail::unrolled;
-    const V vx(&reduced_[0][slot]), vy(&reduced_[1][slot]), vz(&reduced_[2][slot]);
+    const V vx(&reduced_[0][at]), vy(&reduced_[1][at]), vz(&reduced_[2][at]);
     const V dx = vx - load.place.x(), dy = vy - load.place.y(), dz = vz - load.place.z(),
             square = dx * dx + dy * dy + dz * dz, moving = square * square * inverse_root(square);
     unrolled<N>([&](std::size_t k) PALPATE_INLINE_LAMBDA {
       u[k] = V(terms.affine[0][k]) + vx * terms.affine[1][k] + vy * terms.affine[2][k] +
              vz * terms.affine[3][k] + moving * terms.moving[k];
     });
-    const S* kernel = &kernels_[slot];
-    for (std::size_t j = 0; j < spline_.size(); ++j, kernel += partition_.size()) {
+    const S* kernel = &kernels_[at];
+    for (std::size_t j = 0; j < spline_.size(); ++j, kernel += partition_.list_length()) {
       const V here(kernel);
       unrolled<N>([&](std::size_t k) PALPATE_INLINE_LAMBDA { u[k] = u[k] + here * terms.kernel[j][k]; });
     }
@@ -175,8 +179,8 @@ class SmoothInterpolation {
 
   FacePartition<S> partition_;
   TriharmonicSpline spline_;
-  std::array<std::vector<S>, 3> reduced_;  // vertices in the spline's coordinates
-  std::vector<S> kernels_;                 // |v - e_j|^3, site by site
+  std::array<AlignedList<S>, 3> reduced_;  // vertices in the spline's coordinates
+  AlignedList<S> kernels_;                 // |v - e_j|^3, site by site
 };
 
 static_assert(Interpolation<SmoothInterpolation<float>> && Interpolation<SmoothInterpolation<double>>);

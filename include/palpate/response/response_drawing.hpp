@@ -214,8 +214,9 @@ class ResponseDrawing {
     }
     if (held)
       for (auto c : span.close) hold(contacts.contact[c], contacts.near[c], at, reach, u);
-    for (std::uint32_t k = 0; k < entries<V>; k += lane_size)
-      emit(i + k, Lane3{four_of(u.x, k), four_of(u.y, k), four_of(u.z, k)});
+    detail::each_four<V>([&](auto k) PALPATE_INLINE_LAMBDA {
+      emit(i + k, Lane3{four_of<k>(u.x), four_of<k>(u.y), four_of<k>(u.z)});
+    });
   }
 
   // The patch moves by d and turns with the tool, as far as the contact grips; beneath a ball the surface lies on it.

@@ -78,7 +78,9 @@ TEST_CASE_TEMPLATE(
   }
 }
 
-TEST_CASE_TEMPLATE("ascending vertices with gaps, packed or not, leave the gaps alone", T, float, double) {
+TEST_CASE_TEMPLATE(
+    "runs of vertices, packed or not, told whole or in part, leave the gaps between them alone", T, float,
+    double) {
   std::mt19937_64 random(11);
   INFO("seed 11");
   std::vector<std::uint32_t>
@@ -88,20 +90,28 @@ TEST_CASE_TEMPLATE("ascending vertices with gaps, packed or not, leave the gaps 
     end += 1 + static_cast<std::uint32_t>(random() % 3);
     for (std::uint32_t k = static_cast<std::uint32_t>(random() % 40); k > 0; --k) order.push_back(end++);
   }
+  std::vector<std::uint8_t> whole(order.size(), 1);
+  for (std::size_t i = order.size() - 1; i-- > 0;)
+    if (order[i + 1] == order[i] + 1) whole[i] = static_cast<std::uint8_t>(whole[i + 1] + 1);
+  std::vector<std::uint8_t> part = whole;
+  for (std::uint8_t& length : part) length = static_cast<std::uint8_t>(1 + random() % length);
   const auto coordinate = [](std::uint32_t v, std::size_t k) { return static_cast<float>(10 * v + k); };
   std::array<std::vector<float>, 3> place;
   for (const std::uint32_t v : order)
     for (std::size_t k = 0; k < 3; ++k) place[k].push_back(coordinate(v, k));
   for (const std::size_t stride : {3 * sizeof(T), 3 * sizeof(T) + sizeof(float)}) {
     constexpr unsigned char untouched = 0xa5;
-    std::vector<unsigned char> bytes(end * stride, untouched), expected = bytes;
+    std::vector<unsigned char> expected(end * stride, untouched);
     for (const std::uint32_t v : order) {
       const std::array<T, 3> at{T(coordinate(v, 0)), T(coordinate(v, 1)), T(coordinate(v, 2))};
       std::memcpy(&expected[v * stride], at.data(), sizeof at);
     }
-    const auto vertex = [&order](std::size_t i) { return order[i]; };
-    detail::VertexWriter<T>(reinterpret_cast<T*>(bytes.data()), stride)
-        .put_all(order.size(), vertex, place[0].data(), place[1].data(), place[2].data());
-    CHECK(bytes == expected);
+    for (const auto& runs : {whole, part}) {
+      std::vector<unsigned char> bytes(end * stride, untouched);
+      detail::VertexWriter<T>(reinterpret_cast<T*>(bytes.data()), stride)
+          .put_runs(order.size(), order.data(), runs.data(), place[0].data(), place[1].data(),
+                    place[2].data());
+      CHECK(bytes == expected);
+    }
   }
 }

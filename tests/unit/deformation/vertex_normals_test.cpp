@@ -25,13 +25,14 @@ void put(VertexPlaces& places, const MeshData<S>& mesh, std::size_t from, std::s
   std::array<std::vector<S>, 3> axis;
   for (std::size_t v = from; v < from + count; ++v)
     for (std::size_t k = 0; k < 3; ++k) axis[k].push_back(mesh.vertices[v][static_cast<int>(k)]);
-  places.set_row(0, from, count, axis[0].data(), axis[1].data(), axis[2].data());
+  places.set_row(0, count, axis[0].data(), axis[1].data(), axis[2].data());
 }
 template <Real S>
 VertexPlaces places_of(const MeshData<S>& mesh) {
   const std::size_t n = mesh.vertices.size();
-  VertexPlaces places(n, std::vector<std::uint8_t>(n, 1));
+  VertexPlaces places(std::array{VertexRun{0, n}}, std::vector<std::uint8_t>(n, 1));
   put(places, mesh, 0, n);
+  places.pack(0);
   return places;
 }
 
@@ -135,7 +136,7 @@ TEST_CASE(
   const VertexNormals one(rings);
   const auto whole = unit_normals(one, one.all(), places_of(mesh), n);
   VertexNormals normals;
-  const std::array<VertexNormals::Run, 2> runs{{{0, half}, {half, n - half}}};
+  const std::array<VertexRun, 2> runs{{{0, half}, {half, n - half}}};
   std::array<VertexNormals::Group, 2> groups;
   for (std::size_t r = 0; r < 2; ++r) {
     std::vector<std::uint32_t> vertices(runs[r].count);
@@ -145,10 +146,11 @@ TEST_CASE(
   }
   const auto reads = normals.packed_reads(n);
   CHECK(std::count(reads.begin(), reads.end(), 0) > std::ptrdiff_t(n) / 4);
-  VertexPlaces places(half, reads);
+  VertexPlaces places(runs, reads);
   std::vector<Vec3<float>> parts(n, Vec3<float>::Constant(nowhere));
   for (std::size_t r = 0; r < 2; ++r) {
     put(places, mesh, runs[r].first, runs[r].count);
+    places.pack(r);
     normals.each_in_row(groups[r], places, at_rest, into(parts));
   }
   for (std::size_t r = 0; r < 2; ++r) normals.each_apart(groups[r], places, at_rest, into(parts));
@@ -180,11 +182,13 @@ TEST_CASE("places are the same put in a row or anywhere") {
   const std::array<std::uint32_t, 8> order{5, 0, 3, 7, 6, 1, 2, 4};
   const auto x = [](std::uint32_t v) { return 0.1F * float(v); };
   const std::vector<std::uint8_t> all(7, 1);
-  VertexPlaces row(7, all), anywhere(7, all);
+  const std::array runs{VertexRun{0, 7}};
+  VertexPlaces row(runs, all), anywhere(runs, all);
   double at[3][7];
   for (std::uint32_t v = 0; v < 7; ++v)
     for (std::uint32_t axis = 0; axis < 3; ++axis) at[axis][v] = double(x(v) + float(axis));
-  row.set_row(0, 0, 7, at[0], at[1], at[2]);
+  row.set_row(0, 7, at[0], at[1], at[2]);
+  row.pack(0);
   for (std::uint32_t first : {0u, 4u}) {
     detail::Float4 mixed[3];
     for (std::uint32_t k = 0; k < 4; ++k)

@@ -24,7 +24,7 @@ std::vector<std::vector<S>> all_weights(const FacePartition<S>& part, const Poin
   std::vector<std::vector<S>> result(part.size(), std::vector<S>(part.points().size() + 1, S(0)));
   for (std::size_t f = 0; f < part.faces().size(); ++f) {
     const Face<S>& face = part.faces()[f];
-    detail::with_weights(part, at, f, face.first, [&](const auto& weights) {
+    detail::with_weights(part, at, f, 0, [&](const auto& weights) {
       using Group = detail::LaneGroup<S>;
       for (std::size_t i = 0; i < face.count; i += Group::lanes) {
         const auto w = weights.at(i);

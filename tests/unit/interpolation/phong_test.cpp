@@ -131,10 +131,12 @@ TEST_CASE("where all corners move alike along their normals, Phong inflates and 
   contact.normal = contact.place.normalized(), contact.displacement = 1e-3 * contact.normal;
   const auto round = field_of(phong, corners, contact), flat = field_of(linear, corners, contact);
   double least = 1;
-  for (std::size_t slot = 0; slot < round.size(); ++slot) {
-    const Vec3<double> n(part.normal(0)[slot], part.normal(1)[slot], part.normal(2)[slot]);
-    CHECK((round[slot] - 1e-3 * n).norm() <= 1e-17);  // exactly a larger sphere
-    least = std::min(least, flat[slot].norm());
+  for (const Face<double>& face : part.faces()) {
+    for (std::size_t j = 0; j < face.count; ++j) {
+      const Vec3<double> n(part.normal(face, 0)[j], part.normal(face, 1)[j], part.normal(face, 2)[j]);
+      CHECK((round[face.first + j] - 1e-3 * n).norm() <= 1e-17);  // exactly a larger sphere
+      least = std::min(least, flat[face.first + j].norm());
+    }
   }
   CHECK(least < 0.9e-3);
 }
