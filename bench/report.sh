@@ -37,7 +37,7 @@ for file in out/bench/*.csv; do
     echo
   fi
   if [ -f "out/bench/$name.log" ]; then
-    notes=$(grep -E "PASS|OFFENDERS|^scheduling|^reading the clock" "out/bench/$name.log" | sed 's/^/- /' || true)
+    notes=$(grep -E "PASS|OFFENDERS|^slowest|^scheduling|^reading the clock" "out/bench/$name.log" | sed 's/^/- /' || true)
     if [ -n "$notes" ]; then
       echo "$notes"
       echo
