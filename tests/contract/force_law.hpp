@@ -174,12 +174,18 @@ struct ForceLawSuite {
                    ulps<S>(32));  // difference of two numbers three times as large
   }
 
-  // The same law in other units gives the same physics: to the bit where the units are powers of 2.
+  // The same law in other units gives the same physics: to the bit where the units are powers of 2, unless a product and a sum may
+  // be rounded together in one of two places and not in the other.
   void units() const {
     const S length = S(1) / S(1024), force = S(8);  // D [length] F [force]
     const Law other = Example::template make<S>(length, force);
     // Where not exact: a few roundings, of the size of the terms as in tangent_and_energy().
-    const long double tolerance = Example::exact_units ? 0 : ulps<S>(16);
+#if defined(__FMA__)
+    constexpr bool same_roundings = false;
+#else
+    constexpr bool same_roundings = true;
+#endif
+    const long double tolerance = Example::exact_units && same_roundings ? 0 : ulps<S>(16);
     for (const S depth : depths()) {
       const S f = law.force(depth), k = law.stiffness(depth) + f / depth;
       CHECK_ABSOLUTE(other.force(depth / length) * force, f, tolerance * static_cast<long double>(f));

@@ -192,7 +192,8 @@ template <class V>
   return smaller(larger(a, all_of<V>(least)), all_of<V>(most));
 }
 template <class V>
-requires(!std::floating_point<V>) [[nodiscard]] PALPATE_INLINE V magnitude(const V& a) noexcept {
+  requires(!std::floating_point<V>)
+[[nodiscard]] PALPATE_INLINE V magnitude(const V& a) noexcept {
   return std::bit_cast<V>(std::bit_cast<BitsOf<V>>(a) & 0x7fffffffu);
 }
 /// Entries From .. From + 3 of a register.
@@ -215,8 +216,8 @@ PALPATE_INLINE void each_four(const Work& work) noexcept {
 
 /// The same for wider registers.
 template <class V>
-requires(entries<V> > entries<Float4>) PALPATE_INLINE
-    void store_interleaved(unsigned char* to, const V& x, const V& y, const V& z) noexcept {
+  requires(entries<V> > entries<Float4>)
+PALPATE_INLINE void store_interleaved(unsigned char* to, const V& x, const V& y, const V& z) noexcept {
   each_four<V>([&](auto from) PALPATE_INLINE_LAMBDA {
     store_interleaved(to + 3 * sizeof(float) * from, four_of<from>(x), four_of<from>(y), four_of<from>(z));
   });

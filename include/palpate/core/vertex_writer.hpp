@@ -30,10 +30,10 @@ class VertexWriter {
   /// To vertices number first, first + 1 ..; more than four: into a packed buffer.
   template <class V>
   PALPATE_INLINE void put_row(std::size_t first, const V& x, const V& y, const V& z) const noexcept {
-    if (entries < V >> entries<Float4> || is_packed())
-      return store_interleaved(base_ + stride_ * first, x, y, z);
-    if constexpr (entries<V> == entries<Float4>)
-      put_apart([first](std::size_t k) { return first + k; }, x, y, z);
+    if constexpr (entries<V> == entries<Float4>) {
+      if (!is_packed()) return put_apart([first](std::size_t k) { return first + k; }, x, y, z);
+    }
+    store_interleaved(base_ + stride_ * first, x, y, z);
   }
   /// To vertices number vertex(0) .. vertex(3).
   template <class Vertex>

@@ -225,10 +225,8 @@ class DisplacementField {
     const Lists<const S> rest = partition().rest_from(face, from);
     Block<S> moved[3], scale;
     Lists<S> to{moved[0].value, moved[1].value, moved[2].value};
-    bool placed = false;  // where normals are made from
     if constexpr (std::same_as<S, float>) {
-      if (p_.normals)
-        to = {normals_.axis(0) + from, normals_.axis(1) + from, normals_.axis(2) + from}, placed = true;
+      if (p_.normals) to = normals_.places_from(from);
     }
     const Lists<const S> there{to[0], to[1], to[2]};
     bool is_moved = false;
@@ -243,7 +241,7 @@ class DisplacementField {
     const Lists<const S>& at = is_moved ? there : rest;
     extent.take(at, count);
     put(face, from, count, at, out);
-    if (p_.normals && !(placed && is_moved)) normals_.place(from, count, at);
+    if (p_.normals) normals_.place(from, count, at);
   }
 
   static constexpr const char* name = "DisplacementField";

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <cstdint>
 #include <numeric>
 #include <span>
@@ -21,8 +22,8 @@ namespace palpate {
 /// Unit normals of a FacePartition's vertices, by slot; one whose triangles have collapsed has the partition's own normal.
 /// A face that moves changes the normals of its vertices and of their neighbours in other faces.
 ///
-/// Put a face's vertices where `axis` says or `place` them, and say `placed`; then `write_in_row` those that need no other face's, while
-/// its places are in the first cache; `write_apart` the others when all faces that move are there.
+/// Put a face's vertices where `places_from` says, or `place` them, and say `placed`; then `write_in_row` those that need no other
+/// face's, while its places are in the first cache; `write_apart` the others when all faces that move are there.
 template <Real S>
 class PartitionNormals {
  public:
@@ -76,10 +77,15 @@ class PartitionNormals {
     }
   }
 
-  /// Where the coordinates of the face to come are put, in float, on a cache line [m].
-  [[nodiscard]] float* axis(std::size_t i) noexcept { return places_.axis(i); }
-  /// Where `count` of its vertices are now, from its slot number `from` on [m].
+  /// Where the vertices of the face to come are put, from its slot number `from` on, in whole groups of registers [m].
+  [[nodiscard]] PALPATE_INLINE Lists<float> places_from(std::size_t from) noexcept {
+    return {places_.axis(0) + from, places_.axis(1) + from, places_.axis(2) + from};
+  }
+  /// Where `count` of its vertices are now, from its slot number `from` on [m], if they are not put there already.
   PALPATE_INLINE void place(std::size_t from, std::size_t count, const Lists<const S>& at) noexcept {
+    if constexpr (std::same_as<S, float>) {
+      if (at[0] == places_.axis(0) + from) return;
+    }
     places_.set_row(from, count, at[0], at[1], at[2]);
   }
   /// It was face f, and all of its vertices are there.

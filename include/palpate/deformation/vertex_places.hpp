@@ -121,9 +121,8 @@ class VertexPlaces {
   };
   std::vector<Packed3> packed_;
   std::array<AlignedList<float>, 3> axis_;
-  std::vector<Packing> packings_;  // by run
-  std::vector<std::uint32_t> fours_,
-      ones_;  // what is packed, by its number in the run: four at a time, or one
+  std::vector<Packing> packings_;            // by run
+  std::vector<std::uint32_t> fours_, ones_;  // what is packed, by number in the run: from there four, or one
 };
 
 }  // namespace palpate
