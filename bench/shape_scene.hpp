@@ -27,13 +27,14 @@ inline Beams beams() {
 }
 
 /// Force in double, display in float. The buffers are the caller's side: packed positions, and packed normals if asked for.
+template <Interpolation I = PhongInterpolation<float>>
 class Shape {
  public:
-  using Model = BeamSkeletonDeformation<Beams, PhongInterpolation<float>>;
+  using Model = BeamSkeletonDeformation<Beams, I>;
 
   Shape(const MeshData<float>& mesh, bool normals)
-      : model_(beams(), PhongInterpolation<float>(make_partition(ellipsoid<float>(), mesh)),
-               AreaNeighbourhood<float>({}), mesh, {.fixed = bottom, .normals = normals}),
+      : model_(beams(), I(make_partition(ellipsoid<float>(), mesh)), AreaNeighbourhood<float>({}), mesh,
+               {.fixed = bottom, .normals = normals}),
         positions_(3 * mesh.vertices.size()),
         normals_(normals ? positions_.size() : 0) {
     model_.write_rest(buffer());

@@ -49,6 +49,7 @@ expect_line 'static state' '  static const Table table = make();'
 expect_line 'static state' 'inline int counter = 0;'
 expect_line 'state, I/O, lock' 'thread_local int counter;'
 expect_line 'state, I/O, lock' '  if (std::isnan(x)) return;'
+expect_line 'depends on where its vector lies' '  return v.stableNorm();'
 expect_line 'parenthesise (std::min)' '  return std::min(a, b);'
 expect_line 'parenthesise (std::min)' '  return std::numeric_limits<S>::max();'
 

@@ -9,6 +9,8 @@
 ///     normals_us                        detection), the whole force tick (timed as force), and that on the exact
 ///                                       ellipsoid, which has no samples; then the shape with normals (timed as normals)
 ///     shape_us                          force tick, then the shape without normals (timed)
+///     linear_us                         force tick, then the cheapest shape: linear interpolation, on the same mesh with its vertices
+///                                       in the partition's order (sorted_by_face)
 ///     copy_us                           force tick, then memcpy of as many bytes as the positions have (timed)
 ///
 /// So detection and force find the caches as the shape left them; what exact_us grows by is program and solver, not samples.
@@ -23,6 +25,7 @@
 #include "shape_scene.hpp"
 
 #include <palpate/device/triple_buffer.hpp>
+#include <palpate/interpolation/linear.hpp>
 
 #include <malloc.h>
 
@@ -63,7 +66,7 @@ struct Median {
 };
 
 template <class Object>
-Median force_beside_drawing(Touch<Object>& touch, Shape& shape, std::span<const Pose<double>> poses) {
+Median force_beside_drawing(Touch<Object>& touch, Shape<>& shape, std::span<const Pose<double>> poses) {
   struct Pressed {
     std::array<ContactState<double>, Touch<Object>::max_regions> contact{};
     std::size_t count = 0;
@@ -95,7 +98,7 @@ Median force_beside_drawing(Touch<Object>& touch, Shape& shape, std::span<const 
 int main(int argc, char** argv) {
   const Output out(argc, argv,
                    "vertices,triangles,tool_points,detect_us,force_us,shape_us,normals_us,memory_MB,copy_us,"
-                   "exact_us,beside_us,hash");
+                   "exact_us,beside_us,linear_us,hash");
   const auto poses = sliding<double>(0.04, 2e-3);
   Median empty;
   for (int k = 0; k < 10000; ++k) empty.add([] {});
@@ -106,9 +109,10 @@ int main(int argc, char** argv) {
     const MeshData<float> mesh = ellipsoid<float>().mesh(wanted);
     const SampledSurface<MeshSurface<double>> surface(
         MeshSurface<double>(TriangleMesh<double>(ellipsoid<double>().mesh(wanted))), {.spacing = 2e-3});
-    Shape shape(mesh, true);
+    Shape<> shape(mesh, true);
     const double memory = heap_MB() - before;
-    Shape bare(mesh, false);
+    Shape<> bare(mesh, false);
+    Shape<LinearInterpolation<float>> linear(sorted_by_face(mesh, bare.model().field().partition()), false);
     std::vector<float> copy(bare.positions().size());
     for (const int points : {1, 100, 1000}) {
       auto touch = make_touch(surface, points);
@@ -118,7 +122,7 @@ int main(int argc, char** argv) {
       const auto tick = [&](std::size_t k) {
         hash.add(touch.tick(poses[k % poses.size()]).wrench.force.y());
       };
-      Median detect, force, without_samples, normals, positions, copied;
+      Median detect, force, without_samples, normals, positions, plain, copied;
       for (std::size_t k = 0; k < ticks; ++k) {
         const Pose<double>& X = poses[k % poses.size()];
         if (k % 3 == 0) {
@@ -142,6 +146,10 @@ int main(int argc, char** argv) {
       }
       for (std::size_t k = 0; k < ticks; ++k) {
         tick(k);
+        plain.add([&] { linear.write(touch.contacts()); });
+      }
+      for (std::size_t k = 0; k < ticks; ++k) {
+        tick(k);
         copied.add([&] {
           std::memcpy(copy.data(), bare.positions().data(), copy.size() * sizeof(float));
           use(*copy.data());
@@ -150,12 +158,13 @@ int main(int argc, char** argv) {
       hash.add(shape.positions());
       hash.add(shape.normals());
       hash.add(bare.positions());
+      hash.add(linear.positions());
       char row[256];
-      std::snprintf(row, sizeof row, "%zu,%zu,%d,%.3f,%.3f,%.2f,%.2f,%.2f,%.3f,%.3f,%.3f,%016llx",
+      std::snprintf(row, sizeof row, "%zu,%zu,%d,%.3f,%.3f,%.2f,%.2f,%.2f,%.3f,%.3f,%.3f,%.3f,%016llx",
                     mesh.vertices.size(), mesh.triangles.size(), points, detect.value(clock),
                     force.value(clock), positions.value(clock), normals.value(clock), memory,
                     copied.value(clock), without_samples.value(clock),
-                    force_beside_drawing(touch, shape, poses).value(clock),
+                    force_beside_drawing(touch, shape, poses).value(clock), plain.value(clock),
                     static_cast<unsigned long long>(hash.value()));
       double square = 0;
       for (const float x : bare.positions()) square += double(x) * double(x);

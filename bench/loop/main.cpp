@@ -19,7 +19,7 @@ template <class Object>
 void run(const Output& out, const char* name, const Object& object, const MeshData<float>& mesh, Draw draw,
          int rate) {
   auto touch = make_touch(object, 100);
-  Shape shape(mesh, draw == Draw::normals);
+  Shape<> shape(mesh, draw == Draw::normals);
   const auto poses = sliding<double>(0.04, 2e-3);
   const auto period = std::chrono::nanoseconds(1000000000 / rate);
   const auto duration = std::chrono::milliseconds(5000);

@@ -17,4 +17,5 @@ plot of("4") using 1:2 with linespoints pt 5 lc rgb "#9467bd" title "detection",
   of("11") using 1:2 with linespoints pt 6 lc rgb ours title "force, another thread draws", \
   of("6") using 1:2 with linespoints pt 9 lc rgb theirs title "shape", \
   of("7") using 1:2 with linespoints pt 11 lc rgb "#2ca02c" title "shape and normals", \
+  of("12") using 1:2 with linespoints pt 8 lc rgb theirs title "shape, linear, vertices sorted by face", \
   of("9") using 1:2 with lines dt 2 lw 2 lc rgb "black" title "plain copy of the same bytes"

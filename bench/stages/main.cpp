@@ -33,7 +33,7 @@ int main(int argc, char** argv) {
   const Output out(argc, argv, "stage,time_us,share");
   const std::size_t ticks = 10000;
   const auto mesh = ellipsoid<float>().mesh(20000);
-  Shape shape(mesh, true), bare(mesh, false);
+  Shape<> shape(mesh, true), bare(mesh, false);
   const auto& interpolation = bare.model().field().interpolation();
   const auto& partition = interpolation.partition();
   const Beams skeletons = beams();

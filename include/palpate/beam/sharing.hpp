@@ -130,7 +130,7 @@ struct PlanarRatios {
       a += along(beam, D) * q;
       b += (D - along(beam, D)) * (q * q * q);
     }
-    const double size_a = a.stableNorm(), size_b = b.stableNorm(), size_F = F.stableNorm();
+    const double size_a = stable_norm(a), size_b = stable_norm(b), size_F = stable_norm(F);
     if (!(size_a > 0 && size_b > 0 && size_F > 0)) return false;
     a /= size_a;
     b /= size_b;
@@ -138,7 +138,7 @@ struct PlanarRatios {
     const double sine2 = across.squaredNorm();
     if (!(sine2 > least_angle * least_angle)) return false;
     const double y = across.dot(F) / sine2, x = a.dot(F) - y * a.dot(b);
-    if (!((F - x * a - y * b).stableNorm() <= most_residual * size_F)) return false;
+    if (!(stable_norm<double>(F - x * a - y * b) <= most_residual * size_F)) return false;
     for (SkeletonBeam& beam : beams) {
       const double q = unit / beam.length;
       beam.force = along(beam, D) * (x / size_a * q) + (D - along(beam, D)) * (y / size_b * q * q * q);

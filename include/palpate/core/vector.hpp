@@ -39,14 +39,32 @@ template <Real S>
   return Vec3<S>(S(1) + sign * n.x() * n.x() * a, sign * n.x() * n.y() * a, -sign * n.x());
 }
 
+namespace detail {
+/// A square of a length that has neither overflowed nor lost digits to underflow: the usual case.
+template <Real S>
+[[nodiscard]] inline bool is_usual_square(S square) noexcept {
+  return square > (std::numeric_limits<S>::min)() / std::numeric_limits<S>::epsilon() && is_finite(square);
+}
+}  // namespace detail
+
+/// |v| to 2 epsilon wherever it can be represented; not finite where v is not. The same bits for the same v: Eigen's stableNorm begins
+/// with what lies on an aligned address, so that its last digit depends on where v lies.
+template <Real S>
+[[nodiscard]] inline S stable_norm(const Vec3<S>& v) noexcept {
+  const S square = v.squaredNorm();
+  if (detail::is_usual_square(square)) return std::sqrt(square);
+  const S largest = v.cwiseAbs().maxCoeff();
+  if (is_finite(square) && largest == S(0)) return S(0);
+  return largest * (v / largest).norm();
+}
+
 /// v / |v|, or `otherwise` where |v| is too small to have a direction.
 template <Real S>
 [[nodiscard]] inline Vec3<S> unit_or(const Vec3<S>& v, const Vec3<S>& otherwise) noexcept {
   const S square = v.squaredNorm();
-  // Neither overflowed nor underflowed: the usual case.
-  if (square > (std::numeric_limits<S>::min)() / std::numeric_limits<S>::epsilon() && is_finite(square))
+  if (detail::is_usual_square(square))
     return v * (std::sqrt(square) * (S(1) / square));  // root and division side by side
-  const S length = v.stableNorm();
+  const S length = stable_norm(v);
   if (length > (std::numeric_limits<S>::min)()) return v / length;
   return otherwise;
 }

@@ -139,7 +139,7 @@ class FacePartition {
     PointWeights<S> at;
     if (!is_finite(place)) return at;
     const Vec3<double> ray = place.template cast<double>() - centre_;
-    const double length = ray.stableNorm();
+    const double length = stable_norm(ray);
     if (!(length > 0)) return at;
     const Vec3<double> direction = ray / length;
     at.face = face_of(direction);

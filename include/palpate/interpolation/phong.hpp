@@ -62,10 +62,10 @@ class PhongInterpolation {
     load.active = false;
     const auto points = partition_.points();
     if (corners.size() != points.size() || !is_drawable(contact)) return;
-    S largest = contact.displacement.stableNorm();
+    S largest = stable_norm(contact.displacement);
     for (const Vec3<S>& u : corners) {
       if (!is_drawable(u)) return;
-      largest = (std::max)(largest, u.stableNorm());
+      largest = (std::max)(largest, stable_norm(u));
     }
     load.at = partition_.locate(contact.place);
     if (!load.at.valid || !is_finite(largest) || !(largest > S(16) * (std::numeric_limits<S>::min)())) return;
@@ -177,7 +177,7 @@ class PhongInterpolation {
   }
 
   static Corner terms_of(const Vec3<S>& u, const Vec3<S>& normal, S largest) noexcept {
-    const S size = u.stableNorm();
+    const S size = stable_norm(u);
     if (!(size > (std::numeric_limits<S>::min)())) return {};
     const Vec3<S> n = unit_or<S>(normal, Vec3<S>::UnitY()), direction = u / size,
                   s = tangential(direction, n);

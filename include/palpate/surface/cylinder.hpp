@@ -201,7 +201,7 @@ class Cylinder {
  private:
   [[nodiscard]] Vec3<S> half() const noexcept { return Vec3<S>(p_.radius, p_.half_height, p_.radius); }
   [[nodiscard]] static S radial(const Vec3<S>& r) noexcept {
-    return Vec3<S>(r.x(), S(0), r.z()).stableNorm();
+    return stable_norm(Vec3<S>(r.x(), S(0), r.z()));
   }
   // Unit, across the axis; +x on it.
   [[nodiscard]] static Vec3<S> outward(const Vec3<S>& r) noexcept {

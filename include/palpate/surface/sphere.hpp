@@ -45,7 +45,7 @@ class Sphere {
       return {p_.centre + p_.radius * n, n, is_finite(distance) ? distance : (std::numeric_limits<S>::max)()};
     }
     const Vec3<S> n = unit_or<S>(r, Vec3<S>::UnitX());
-    return {p_.centre + p_.radius * n, n, r.stableNorm() - p_.radius};
+    return {p_.centre + p_.radius * n, n, stable_norm(r) - p_.radius};
   }
 
   /// Depth R - |x - m| and outward normal; outside {0, 0}.
@@ -55,7 +55,7 @@ class Sphere {
     if (!is_finite(square) || !(square < p_.radius * p_.radius)) return {S(0), Vec3<S>::Zero()};
     if (square <
         (std::numeric_limits<S>::min)() / std::numeric_limits<S>::epsilon())  // the centre, or next to it
-      return {p_.radius - r.stableNorm(), unit_or<S>(r, Vec3<S>::UnitX())};
+      return {p_.radius - stable_norm(r), unit_or<S>(r, Vec3<S>::UnitX())};
     const S length = std::sqrt(square);
     return {p_.radius - length, r / length};
   }

@@ -318,7 +318,7 @@ class Superellipsoid {
     Vec3<S> start = p_.axes;
     S nearest = (std::numeric_limits<S>::max)();
     const auto offer = [&](const Vec3<S>& p) {
-      const S distance = (p - r).stableNorm();
+      const S distance = stable_norm<S>(p - r);
       if (is_finite(p) && distance < nearest) nearest = distance, start = p;
     };
     const S n = norm_.value(z);

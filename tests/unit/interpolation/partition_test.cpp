@@ -264,5 +264,5 @@ TEST_CASE("set-up refuses what cannot be cut into faces") {
   CHECK_THROWS_WITH(make(points), "FacePartition: place and normal must be finite, at extremal point 2");
   normals.pop_back();
   CHECK_THROWS_AS(make(extremal_points(ellipsoid)), SetupError);
-  CHECK_THROWS_AS(make_partition(ellipsoid, mesh, {.fade = 0.2}), SetupError);
+  CHECK_THROWS_AS((void)make_partition(ellipsoid, mesh, {.fade = 0.2}), SetupError);
 }

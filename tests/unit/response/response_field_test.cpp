@@ -180,7 +180,7 @@ TEST_CASE("tick: no heap, no memory of what was before, coinciding contacts, sur
   for (int i = 0; i < 6; ++i) CHECK(v[i] == u[i]);
   // The same patch two and three times: the system stays definite, and together they push about as hard as one.
   const ResponseContact<double> same[4] = {one, one, one, one};
-  for (std::size_t count : {2, 3}) {
+  for (const std::size_t count : {2u, 3u}) {
     CHECK(fresh.solve(same, count, again) == Status::contact);
     V sum = V::Zero();
     for (std::size_t c = 0; c < count; ++c) sum += again[c];

@@ -40,7 +40,7 @@ void check_points(const Body& body, std::size_t count) {
 struct MyBody {  // a user's own surface with its own points
   using Scalar = double;
 };
-std::vector<ExtremalPoint<double>> extremal_points(const MyBody&) {
+[[maybe_unused]] std::vector<ExtremalPoint<double>> extremal_points(const MyBody&) {
   return {{Vec3<double>::UnitX(), Vec3<double>::UnitX()}};
 }
 
