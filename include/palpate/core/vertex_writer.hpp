@@ -96,9 +96,9 @@ class VertexWriter {
     for (std::size_t i = 0; i < count;) {
       const std::size_t length = run[i] < count - i ? run[i] : count - i;
       if constexpr (sizeof(S) == sizeof(float)) {
-        if (length < entries<WideRegister> && i + entries<Float4> <= count) {
-          put_four([at = vertex + i](std::size_t k) { return at[k]; }, load_vector<Float4>(x + i),
-                   load_vector<Float4>(y + i), load_vector<Float4>(z + i));
+        if (length < entries<Float4> && i + entries<Float4> <= count) {
+          put_apart([at = vertex + i](std::size_t k) { return at[k]; }, load_vector<Float4>(x + i),
+                    load_vector<Float4>(y + i), load_vector<Float4>(z + i));
           i += entries<Float4>;
           continue;
         }
