@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  One force tick per composition: detection on an exact surface, regions, force, friction, wrench. Each row also
-/// prints what it computed (`touching` points, `F` in newtons), so that two builds can be seen to do the same work.
+/// @file One force tick per composition: detection on an exact surface, regions, force, friction, wrench.
+/// Each row also prints what it computed (`touching` points, `F` in newtons), so that two builds can be seen
+/// to do the same work.
 
 #include "scenes.hpp"
 
@@ -43,7 +44,8 @@ std::vector<Pose<S>> sliding(S depth) {
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const double phi = 2 * 3.14159265358979323846 * static_cast<double>(i) / 256;
     const S x = S(2e-3 * std::sin(phi)), z = S(1e-3 * std::sin(2 * phi));
-    poses[i].translation = Vec3<S>(x, S(0.04) * std::sqrt(S(1) - x * x / S(0.0036) - z * z / S(0.0016)) - depth, z);
+    poses[i].translation =
+        Vec3<S>(x, S(0.04) * std::sqrt(S(1) - x * x / S(0.0036) - z * z / S(0.0016)) - depth, z);
   }
   return poses;
 }
@@ -60,7 +62,8 @@ void run(benchmark::State& state, Solver solver, const std::vector<Pose<typename
   double touching = 0;
   for (const auto& pose : poses) {  // the same poses once more, outside the clock, for the check
     force += static_cast<double>(solver.tick(pose).wrench.force.norm()) / static_cast<double>(poses.size());
-    for (const auto& contact : solver.contacts()) touching += contact.points / static_cast<double>(poses.size());
+    for (const auto& contact : solver.contacts())
+      touching += contact.points / static_cast<double>(poses.size());
   }
   state.counters["F"] = force;
   state.counters["touching"] = touching;
@@ -84,19 +87,22 @@ void point_friction(benchmark::State& state) {
 template <Real S>
 void region_friction(benchmark::State& state) {
   using Solver = ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, SingleRegion<>>;
-  run(state, Solver({ellipsoid<S>(), face<S>(int(state.range(0))), duffing<S>(), fibre<S>(), {}}), sliding<S>(S(2e-3)));
+  run(state, Solver({ellipsoid<S>(), face<S>(int(state.range(0))), duffing<S>(), fibre<S>(), {}}),
+      sliding<S>(S(2e-3)));
 }
 template <Real S>
 void regions_friction(benchmark::State& state) {
   using Solver = ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<8>>;
   const int side = int(state.range(0));
-  run(state, Solver({ellipsoid<S>(), face<S>(side), duffing<S>(), fibre<S>(), {1.5 * spacing(side)}}), sliding<S>(S(2e-3)));
+  run(state, Solver({ellipsoid<S>(), face<S>(side), duffing<S>(), fibre<S>(), {1.5 * spacing(side)}}),
+      sliding<S>(S(2e-3)));
 }
 template <Real S>
 void regions_out_of_reach(benchmark::State& state) {
   using Solver = ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<8>>;
   const int side = int(state.range(0));
-  run(state, Solver({ellipsoid<S>(), face<S>(side), duffing<S>(), fibre<S>(), {1.5 * spacing(side)}}), sliding<S>(S(-20e-3)));
+  run(state, Solver({ellipsoid<S>(), face<S>(side), duffing<S>(), fibre<S>(), {1.5 * spacing(side)}}),
+      sliding<S>(S(-20e-3)));
 }
 
 BENCHMARK(point_out_of_reach<double>);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  A ball of 1,000 points and 20 mm radius that glides 2 mm deep over a dented body of about 20 cm: the scene of
-/// bench/mesh and bench/adapters.
+/// @file A ball of 1,000 points and 20 mm radius that glides 2 mm deep over a dented body of about 20 cm: the
+/// scene of bench/mesh and bench/adapters.
 
 #include <palpate/palpate.hpp>
 

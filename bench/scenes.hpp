@@ -39,7 +39,8 @@ PowerLawFriction<S, Slip, Skew> fibre() {
 inline constexpr double spacing = 0.3e-3;  ///< of a tool's points [m]
 inline constexpr double joining = 0.5e-3;  ///< threshold r of the regions [m]
 
-/// A flat face of `count` points in `patches` patches, each further from the next than `joining`: so many regions.
+/// A flat face of `count` points in `patches` patches, each further from the next than `joining`: so many
+/// regions.
 template <Real S>
 ToolPoints<S> face(int count, int patches) {
   int rows = static_cast<int>(std::sqrt(double(count)));
@@ -89,8 +90,8 @@ inline std::int64_t clock_cost() {
   return least;
 }
 
-/// Returns at `time`, to about 0.1 us: sleeps for most of it, then spins, so that the core does not fall asleep at
-/// the wrong moment.
+/// Returns at `time`, to about 0.1 us: sleeps for most of it, then spins, so that the core does not fall
+/// asleep at the wrong moment.
 inline void wait_until(Clock::time_point time) {
   const auto left = time - Clock::now();
   if (left > std::chrono::microseconds(200)) {

@@ -5,10 +5,10 @@
 
 #include "scenes.hpp"
 
-#include <palpate/deformation/beam_skeleton.hpp>
-#include <palpate/interpolation/phong.hpp>
-#include <palpate/surface/mesh_surface.hpp>
-#include <palpate/surface/sampled_surface.hpp>
+#include <palpate/geometry/mesh_surface.hpp>
+#include <palpate/geometry/sampled_surface.hpp>
+#include <palpate/luo_xiao/beam_skeleton.hpp>
+#include <palpate/luo_xiao/interpolation/phong.hpp>
 
 #include <bit>
 #include <span>
@@ -26,7 +26,8 @@ inline Beams beams() {
                                 VolumePreserving<double>({.volume = ellipsoid<double>().volume()})));
 }
 
-/// Force in double, display in float. The buffers are the caller's side: packed positions, and packed normals if asked for.
+/// Force in double, display in float. The buffers are the caller's side: packed positions, and packed normals
+/// if asked for.
 template <Interpolation I = PhongInterpolation<float>>
 class Shape {
  public:

@@ -336,8 +336,7 @@ class HapticDevice {
   void forget() noexcept {
     gate_.disarm();
     if constexpr (requires {
-                    { solver_.reset() }
-                    noexcept;
+                    { solver_.reset() } noexcept;
                   })
       solver_.reset();
   }

@@ -6,7 +6,7 @@ set -eu
 cd "$1"
 
 # Reading order of the folders; each includes only those before it and itself.
-layers="core material surface detection region force friction equivalent beam interpolation response deformation solver device calibrate adapters"
+layers="core geometry display detection contact law elasticity luo_xiao response resolved solver device calibrate adapters"
 
 version=$(awk '$2 ~ /^PALPATE_VERSION_(MAJOR|MINOR|PATCH)$/ { v = v "." $3 } END { print substr(v, 2) }' \
   include/palpate/version.hpp)
@@ -14,7 +14,7 @@ version=$(awk '$2 ~ /^PALPATE_VERSION_(MAJOR|MINOR|PATCH)$/ { v = v "." $3 } END
 report=$(mktemp)
 trap 'rm -f "$report"' EXIT
 {
-  find include -name '*.hpp' | sort | xargs awk -v layers="$layers" '
+  find include -name '*.hpp' | sort | xargs awk -v layers="core geometry display detection contact law elasticity luo_xiao response resolved solver device calibrate adapters" '
     function bad(what) { print FILENAME ":" FNR ": " what }
     function end_of_file() {
       if (!once) print last ": no #pragma once"

@@ -4,7 +4,7 @@
 set -eu
 check=$(cd "$(dirname "$0")" && pwd)/check_house.sh
 rm -rf "$1"
-mkdir -p "$1/include/palpate/core" "$1/include/palpate/force" "$1/include/palpate/elsewhere" "$1/tests" "$1/docs"
+mkdir -p "$1/include/palpate/core" "$1/include/palpate/law" "$1/include/palpate/elsewhere" "$1/tests" "$1/docs"
 cd "$1"
 printf '@book{known2000,\n}\n' >docs/references.bib
 printf '// SPDX-License-Identifier: MIT\n#pragma once\n/// @file  Version.\n#define PALPATE_VERSION_MAJOR 7\n#define PALPATE_VERSION_MINOR 6\n#define PALPATE_VERSION_PATCH 5\n' >include/palpate/version.hpp
@@ -36,7 +36,7 @@ expect_line() {  # expect_line MESSAGE LINE: the same for a header of core/ with
   expect "$1"
   rm include/palpate/core/bad.hpp
 }
-expect_line 'core/ includes force/, which comes after it' '#include <palpate/force/law.hpp>'
+expect_line 'core/ includes law/, which comes after it' '#include <palpate/law/force.hpp>'
 expect_line 'include with <>' '#include "other.hpp"'
 expect_line '<iostream> has no place in a header' '#include <iostream>'
 expect_line '<Eigen/Dense> has no place in a header' '#include <Eigen/Dense>'

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Candidates from palpate's own search, from FCL's tree and from Bullet's: `bench_adapters OUTPUT.csv [--quick]`.
-/// A ball of 1,000 points and 20 mm radius glides 2 mm deep over a dented body of 39,000 triangles, as in bench/mesh;
-/// depth from the mesh itself and from its samples. "fcl_collide" asks fcl::collide() instead of walking FCL's tree.
-/// Columns: points that are candidates, the search alone, the whole tick, heap allocations per tick; printed with them: the
-/// mean force, which all must agree in. Ratios between rows of one run are what to read.
+/// @file Candidates from palpate's own search, from FCL's tree and from Bullet's: `bench_adapters OUTPUT.csv
+/// [--quick]`. A ball of 1,000 points and 20 mm radius glides 2 mm deep over a dented body of 39,000
+/// triangles, as in bench/mesh; depth from the mesh itself and from its samples. "fcl_collide" asks
+/// fcl::collide() instead of walking FCL's tree. Columns: points that are candidates, the search alone, the
+/// whole tick, heap allocations per tick; printed with them: the mean force, which all must agree in. Ratios
+/// between rows of one run are what to read.
 
 #include <palpate/adapters/bullet.hpp>
 #include <palpate/adapters/fcl.hpp>
@@ -41,7 +42,7 @@ struct Collide {
 /// Returns the mean force.
 template <class Object>
 double row(const Output& out, const char* depth, const char* search, const Object& object,
-         const std::vector<Pose<S>>& poses) {
+           const std::vector<Pose<S>>& poses) {
   auto solver = ball_solver(object);
   const ToolPoints<S>& tool = solver.tool();
   std::vector<double> searches, ticks;
@@ -105,7 +106,8 @@ int main(int argc, char** argv) {
     const double own = row(out, depth, "palpate", object, poses);
     const auto other = [&](const char* search, const auto& tree) {
       const double force = row(out, depth, search, CandidatesFrom(object, tree, margin), poses);
-      out.require_below(std::string("force with ") + search, std::abs(force - own) / own, 1e-9);  // sums in another order
+      out.require_below(std::string("force with ") + search, std::abs(force - own) / own,
+                        1e-9);  // sums in another order
     };
     other("fcl_obbrss", FclTree(oriented));
     other("fcl_aabb", FclTree(parallel));

@@ -1,26 +1,28 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Does every force tick keep its budget? One row for each composition, number of points and of regions: back to
-/// back, and paced at 1 kHz, where a dozen scenes take turns and each finds the caches used by the others. Compiled once for
-/// each SCALAR.
+/// @file Does every force tick keep its budget? One row for each composition, number of points and of
+/// regions: back to back, and paced at 1 kHz, where a dozen scenes take turns and each finds the caches used
+/// by the others. Compiled once for each SCALAR.
 ///
-/// After every tick an empty tick runs: arithmetic without memory that takes as long as the median tick. Both are
-/// exposed to the machine for the same time, so it holds up as many ticks of the library as empty ones: an offender has
-/// more ticks over the budget than that. OUTPUT_machine.csv has the empty tick's distribution row by row.
+/// After every tick an empty tick runs: arithmetic without memory that takes as long as the median tick. Both
+/// are exposed to the machine for the same time, so it holds up as many ticks of the library as empty ones:
+/// an offender has more ticks over the budget than that. OUTPUT_machine.csv has the empty tick's distribution
+/// row by row.
 ///
-/// The tool goes round the same path of 256 poses again and again, and a solver does the same work in the same place each time. The
-/// least time of a place over all rounds is the solver's own, without the machine: OUTPUT_machine.csv has the median place and the
-/// slowest one (own_p50_us, own_max_us; empty for fewer than 8 rounds).
+/// The tool goes round the same path of 256 poses again and again, and a solver does the same work in the
+/// same place each time. The least time of a place over all rounds is the solver's own, without the machine:
+/// OUTPUT_machine.csv has the median place and the slowest one (own_p50_us, own_max_us; empty for fewer than
+/// 8 rounds).
 ///
-/// Budgets: 30 us for 99.9 % of all ticks up to 1,000 points and 8 regions; median 0.1 us for one point and 1 us for 100
-/// points on an exact surface. Times are less what reading the clock takes.
+/// Budgets: 30 us for 99.9 % of all ticks up to 1,000 points and 8 regions; median 0.1 us for one point and 1
+/// us for 100 points on an exact surface. Times are less what reading the clock takes.
 
 #include "scenes.hpp"
 #include "support/no_heap.hpp"
 
-#include <palpate/beam/regions.hpp>
-#include <palpate/surface/mesh_surface.hpp>
-#include <palpate/surface/sampled_surface.hpp>
+#include <palpate/geometry/mesh_surface.hpp>
+#include <palpate/geometry/sampled_surface.hpp>
+#include <palpate/luo_xiao/beam/regions.hpp>
 
 #include <algorithm>
 #include <array>
@@ -303,7 +305,8 @@ struct Bench {
                  us(s.empty_time.quantile(0.99)), us(s.empty_time.quantile(0.999)), us(s.empty_time.max()),
                  s.empty_over, s.over_beside_held_up, own, s.force);
     ++rows;
-    // Ticks over the budget beyond those that the empty tick shows, less three standard deviations of that difference.
+    // Ticks over the budget beyond those that the empty tick shows, less three standard deviations of that
+    // difference.
     const double ours = double(s.over), theirs = double(s.empty_over);
     const bool slow = ours - theirs - 3 * std::sqrt(ours + theirs) > 1e-3 * double(s.ticks);
     const bool slow_median = p50 > s.median_budget;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  How time and memory grow with the object's mesh. The same mesh is what the tool touches (sampled 2 mm apart:
-/// SampledSurface of a MeshSurface, double; bench/mesh has the mesh itself) and what is drawn (positions and normals, float), so that both grow, and both want the same caches.
+/// @file How time and memory grow with the object's mesh. The same mesh is what the tool touches (sampled 2
+/// mm apart: SampledSurface of a MeshSurface, double; bench/mesh has the mesh itself) and what is drawn
+/// (positions and normals, float), so that both grow, and both want the same caches.
 ///
 /// Every tick moves the tool, asks, and writes the whole shape, as one servo thread would:
 ///
@@ -13,19 +14,20 @@
 ///                                       in the partition's order (sorted_by_face)
 ///     copy_us                           force tick, then memcpy of as many bytes as the positions have (timed)
 ///
-/// So detection and force find the caches as the shape left them; what exact_us grows by is program and solver, not samples.
+/// So detection and force find the caches as the shape left them; what exact_us grows by is program and
+/// solver, not samples.
 ///
 ///     beside_us                         the force tick at 10 kHz in a thread of its own, while another draws as fast as it can
 ///                                       (shape with normals, contacts handed over by a TripleBuffer)
 ///
-/// Medians of the thread's processor time, less what reading it costs: a large mesh takes longer than a time slice, and
-/// other programs' share would count. memory_MB: heap of mesh
-/// surface, shape model and its buffers. hash: of the forces, the positions and the normals.
+/// Medians of the thread's processor time, less what reading it costs: a large mesh takes longer than a time
+/// slice, and other programs' share would count. memory_MB: heap of mesh surface, shape model and its
+/// buffers. hash: of the forces, the positions and the normals.
 
 #include "shape_scene.hpp"
 
 #include <palpate/device/triple_buffer.hpp>
-#include <palpate/interpolation/linear.hpp>
+#include <palpate/luo_xiao/interpolation/linear.hpp>
 
 #include <malloc.h>
 

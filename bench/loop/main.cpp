@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  The whole loop in one thread at the rates of haptic devices: pose of a scripted hand, detection, force, friction,
-/// force limit, shape and normals of 20,000 vertices. A tick begins at its own absolute time; one that begins after the next
-/// was due has missed. Ordinary scheduling, no privileges: no real-time priority, no locked memory, no core of its own; so
-/// the longest period is the machine's as much as the library's.
+/// @file The whole loop in one thread at the rates of haptic devices: pose of a scripted hand, detection,
+/// force, friction, force limit, shape and normals of 20,000 vertices. A tick begins at its own absolute
+/// time; one that begins after the next was due has missed. Ordinary scheduling, no privileges: no real-time
+/// priority, no locked memory, no core of its own; so the longest period is the machine's as much as the
+/// library's.
 ///
 /// The tool touches the exact ellipsoid, or (mesh_...) the mesh that is drawn.
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Triangle meshes as elastic objects, from 1,000 to 1,000,000 triangles: `bench_mesh OUTPUT.csv`.
-/// A ball of 1,000 points and 20 mm radius glides 2 mm deep over a dented body of about 20 cm, 50 um a tick.
-/// Columns: set-up, refit of the tree after 1 in 100 vertices moved and after all did, one closest point from within 5 mm
-/// of the surface, the force tick on the mesh itself and on its samples, how many points touch, the force of both, and the
-/// force tick on the mesh bulged out by 0.5 mm (DeformedSurface).
+/// @file Triangle meshes as elastic objects, from 1,000 to 1,000,000 triangles: `bench_mesh OUTPUT.csv`. A
+/// ball of 1,000 points and 20 mm radius glides 2 mm deep over a dented body of about 20 cm, 50 um a tick.
+/// Columns: set-up, refit of the tree after 1 in 100 vertices moved and after all did, one closest point from
+/// within 5 mm of the surface, the force tick on the mesh itself and on its samples, how many points touch,
+/// the force of both, and the force tick on the mesh bulged out by 0.5 mm (DeformedSurface).
 
 #include "mesh_scene.hpp"
 

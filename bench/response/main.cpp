@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  What a response field costs, in the tick and at set-up: docs/accuracy.md, chapter Cost.
+/// @file What a response field costs, in the tick and at set-up: docs/accuracy.md, chapter Cost.
 ///
-/// The ellipsoid of half axes 60, 40, 40 mm, held where y <= -36 mm, E = 1.5 MPa, nu = 0.49, the default number of solve vertices;
-/// contacts move along path.hpp's path, so that no tick has those of the one before. Steps take turns, so that all see the same
-/// machine; a turn is six times along the path, so that a step finds the caches as it left them.
+/// The ellipsoid of half axes 60, 40, 40 mm, held where y <= -36 mm, E = 1.5 MPa, nu = 0.49, the default
+/// number of solve vertices; contacts move along path.hpp's path, so that no tick has those of the one
+/// before. Steps take turns, so that all see the same machine; a turn is six times along the path, so that a
+/// step finds the caches as it left them.
 ///
 ///     force                solve(), which also finds the place; "after a field": a field drawn just before used the caches
 ///     field                displace() into packed floats, after a solve() that is not timed
@@ -14,16 +15,17 @@
 ///     save, load           to bytes and back
 ///     fresh memory         what the system takes for as many bytes, written once
 ///
-/// time_us: lower quartile, as what others do to the machine only adds; p99_us has them in it. Both less what reading the clock
-/// takes. The last five steps are done five times, each in memory that the system has just given, as in a program that starts;
-/// their p99_us is the longest. heap_allocations: in all ticks of the step; empty where allocating is the work. hash: of the
-/// figures beside the row, and of what the step wrote last; a loaded field has that of the one set up.
+/// time_us: lower quartile, as what others do to the machine only adds; p99_us has them in it. Both less what
+/// reading the clock takes. The last five steps are done five times, each in memory that the system has just
+/// given, as in a program that starts; their p99_us is the longest. heap_allocations: in all ticks of the
+/// step; empty where allocating is the work. hash: of the figures beside the row, and of what the step wrote
+/// last; a loaded field has that of the one set up.
 
 #include "response/path.hpp"
 #include "shape_scene.hpp"
 #include "support/no_heap.hpp"
 
-#include <palpate/deformation/response_field.hpp>
+#include <palpate/response/deformation.hpp>
 #include <palpate/response/save.hpp>
 
 #include <malloc.h>

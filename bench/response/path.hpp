@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Contacts that move along a closed path over the upper half of the ellipsoid of scenes.hpp, 1 to 2 mm deep and askew.
+/// @file Contacts that move along a closed path over the upper half of the ellipsoid of scenes.hpp, 1 to 2 mm
+/// deep and askew.
 
 #include "scenes.hpp"
 

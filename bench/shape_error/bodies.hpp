@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  The bodies of tests/support/response_bodies.hpp, each pressed by one patch, as triangles to be drawn. No reference.
+/// @file The bodies of tests/support/response_bodies.hpp, each pressed by one patch, as triangles to be
+/// drawn. No reference.
 
 #include "support/response_bodies.hpp"
 
+#include <palpate/geometry/bvh.hpp>
 #include <palpate/response/response_contact.hpp>
 #include <palpate/response/response_display.hpp>
-#include <palpate/surface/bvh.hpp>
 
 #include <array>
 #include <cstdio>
@@ -38,8 +39,8 @@ inline palpate::MeshData<double> refined(palpate::MeshData<double> mesh, std::si
   return mesh;
 }
 
-/// Per triangle its corners, the last twice (a quadrilateral of two rows, for gnuplot): number of the body, rest place and
-/// displacement [mm], length of the displacement by the tool's way.
+/// Per triangle its corners, the last twice (a quadrilateral of two rows, for gnuplot): number of the body,
+/// rest place and displacement [mm], length of the displacement by the tool's way.
 inline void draw_bodies(std::FILE* to) {
   using V = palpate::Vec3<double>;
   struct Press {

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Where on the surface a deformed shape is wrong: the library's closed-form and solved fields against nonlinear finite
-/// elements (truth/data), a stuck patch pressed 4 mm deep. shape_error.csv: relative L2 error; shape_error.tsv beside it, for the
-/// plot: per vertex its place, the reference's displacement and the model's [mm]. bodies.tsv: bodies that have no reference.
+/// @file Where on the surface a deformed shape is wrong: the library's closed-form and solved fields against
+/// nonlinear finite elements (truth/data), a stuck patch pressed 4 mm deep. shape_error.csv: relative L2
+/// error; shape_error.tsv beside it, for the plot: per vertex its place, the reference's displacement and the
+/// model's [mm]. bodies.tsv: bodies that have no reference.
 
 #include "scenes.hpp"
 #include "shape_error/bodies.hpp"
 #include "work_precision_shape/body.hpp"
 
-#include <palpate/deformation/half_space.hpp>
+#include <palpate/elasticity/half_space.hpp>
 #include <palpate/response/response_contact.hpp>
 #include <palpate/response/response_display.hpp>
 

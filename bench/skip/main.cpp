@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  What an absent policy and an idle phase save. Compiled once with each COMPOSITION=name, so that the program's size is
-/// that composition's: `palpate_bench_skip_NAME PHASE [normals]` prints scene, composition, bytes of solver and deformation model,
-/// heap allocations and a checksum. bench/skip/run has callgrind count the instructions of `counted`, exactly. A picture's normals
-/// are chosen at run time: one program for both.
+/// @file What an absent policy and an idle phase save. Compiled once with each COMPOSITION=name, so that the
+/// program's size is that composition's: `palpate_bench_skip_NAME PHASE [normals]` prints scene, composition,
+/// bytes of solver and deformation model, heap allocations and a checksum. bench/skip/run has callgrind count
+/// the instructions of `counted`, exactly. A picture's normals are chosen at run time: one program for both.
 
 #include "skip/headers.hpp"
 #include "support/no_heap.hpp"

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Where the time of the paper's shape goes at 20,000 vertices, one contact that slides: microseconds per tick of each
-/// stage, and its share of the whole.
+/// @file Where the time of the paper's shape goes at 20,000 vertices, one contact that slides: microseconds
+/// per tick of each stage, and its share of the whole.
 ///
-/// skeleton_share, skeleton_release, prepare and weights are called on their own with a tick's input. write is the tick
-/// without normals less those four: the field, the vertices' places and the box around them. normals is the tick with
-/// normals less the one without. Medians over the ticks; a stage too short for the clock is repeated.
+/// skeleton_share, skeleton_release, prepare and weights are called on their own with a tick's input. write
+/// is the tick without normals less those four: the field, the vertices' places and the box around them.
+/// normals is the tick with normals less the one without. Medians over the ticks; a stage too short for the
+/// clock is repeated.
 
 #include "shape_scene.hpp"
 

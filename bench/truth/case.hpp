@@ -3,7 +3,7 @@
 
 /// @file  Reads a reference case: a folder with meta.json, surface.obj(.gz) and force.csv.
 
-#include <palpate/surface/triangle_mesh.hpp>
+#include <palpate/geometry/triangle_mesh.hpp>
 
 #include <array>
 #include <cstdio>
@@ -36,7 +36,8 @@ inline std::string read_text(const std::string& path) {
   return text;
 }
 
-/// The numbers of a file of comma-separated values, its heading left out. Throws std::runtime_error where there are none.
+/// The numbers of a file of comma-separated values, its heading left out. Throws std::runtime_error where
+/// there are none.
 inline std::vector<std::vector<double>> csv_rows(const std::string& path) {
   std::istringstream in(read_text(path));
   std::string line;
@@ -102,7 +103,8 @@ inline palpate::MeshData<double> read_obj(const std::string& text) {
   return mesh;
 }
 
-/// A patch of the surface that is moved by depth * factor * direction, and turned about its place by depth * turn.
+/// A patch of the surface that is moved by depth * factor * direction, and turned about its place by depth *
+/// turn.
 struct Patch {
   V place, normal, direction;  ///< normal: outward
   double radius, factor;       ///< [m], -

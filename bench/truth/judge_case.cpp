@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Prints the errors of displacements and forces against a reference case, in percent.
+/// @file Prints the errors of displacements and forces against a reference case, in percent.
 ///
 ///     judge_case CASE_DIR displacement.csv force.csv [linear]
 ///
-/// CASE_DIR holds vertices.csv, displacement.csv and force.csv, plain or .gz; `linear`: displacement_linear.csv, force_linear.csv.
-/// Displacement: relative L2 over the surface's area, largest error over largest displacement, and L2 beyond two patch radii.
-/// Force: difference of the vectors over the reference's |F|, of a patch that is turned only over |F| + |T|/a; torque, where both have
-/// one, over |T| + a |F|. Depths that either side lacks are left out.
+/// CASE_DIR holds vertices.csv, displacement.csv and force.csv, plain or .gz; `linear`:
+/// displacement_linear.csv, force_linear.csv. Displacement: relative L2 over the surface's area, largest
+/// error over largest displacement, and L2 beyond two patch radii. Force: difference of the vectors over the
+/// reference's |F|, of a patch that is turned only over |F| + |T|/a; torque, where both have one, over |T| +
+/// a |F|. Depths that either side lacks are left out.
 
 #include "truth/case.hpp"
 

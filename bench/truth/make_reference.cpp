@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Makes a reference case by finite elements: the bodies of docs/accuracy.md. `references.sh` calls it.
+/// @file Makes a reference case by finite elements: the bodies of docs/accuracy.md. `references.sh` calls it.
 ///
 ///     make_reference NAME CASE_DIR fineness     without arguments: the names
 ///
-/// Stuck flat patches on rubber, pressed by their depth and turned, or a frictionless ball. Needs gmsh as a command. Writes what truth_cases
-/// reads into CASE_DIR:
-/// meta.json, surface.obj, vertices.csv, displacement.csv, displacement_linear.csv (small strain), force.csv, force_linear.csv, with the
-/// torques about the patches' middles, where they have moved to.
-/// Vertices: the elements' nodes on the surface. fineness: patch radius over edges at its rim. Of a ball there is nothing linear.
+/// Stuck flat patches on rubber, pressed by their depth and turned, or a frictionless ball. Needs gmsh as a
+/// command. Writes what truth_cases reads into CASE_DIR: meta.json, surface.obj, vertices.csv,
+/// displacement.csv, displacement_linear.csv (small strain), force.csv, force_linear.csv, with the torques
+/// about the patches' middles, where they have moved to. Vertices: the elements' nodes on the surface.
+/// fineness: patch radius over edges at its rim. Of a ball there is nothing linear.
 
 #include "truth/rubber.hpp"
 
@@ -359,7 +359,8 @@ class Reference {
     });
   }
 
-  // press(from, by): moves the tool on, false where there is no equilibrium; load(patch): of the part that is meshed.
+  // press(from, by): moves the tool on, false where there is no equilibrium; load(patch): of the part that is
+  // meshed.
   template <class Press, class LoadOf>
   std::vector<double> follow(const Strides& strides, Press press, LoadOf load) {
     const Tables tables(folder_, "");

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Statics of nearly incompressible neo-Hookean rubber at any displacement, by finite elements: what references are made with.
+/// @file Statics of nearly incompressible neo-Hookean rubber at any displacement, by finite elements: what
+/// references are made with.
 ///
-/// W = mu/2 (J^(-2/3) tr C - 3) + ks/4 (J^2 - 1 - 2 ln J) + (K - ks)/2 (J - 1)^2, ks = 10 mu, or K where that is less; the last term through a
-/// continuous linear pressure (Taylor and Hood's ten-node tetrahedra). Total Lagrangian, full Newton, MUMPS. Shares no code with the library.
+/// W = mu/2 (J^(-2/3) tr C - 3) + ks/4 (J^2 - 1 - 2 ln J) + (K - ks)/2 (J - 1)^2, ks = 10 mu, or K where that
+/// is less; the last term through a continuous linear pressure (Taylor and Hood's ten-node tetrahedra). Total
+/// Lagrangian, full Newton, MUMPS. Shares no code with the library.
 
 #include "truth/tetrahedra.hpp"
 
@@ -60,14 +62,16 @@ class SymmetricEquations {
   std::vector<int> rows_, columns_;
 };
 
-/// A rigid frictionless sphere that faces of the body (six nodes each) may not enter: a penalty holds them out.
+/// A rigid frictionless sphere that faces of the body (six nodes each) may not enter: a penalty holds them
+/// out.
 struct RigidSphere {
   V centre;
   double radius = 0, penalty = 0;  ///< [mm], [MPa/mm]
   std::vector<std::array<int, 6>> faces;
 };
 
-/// A body some of whose displacements are prescribed. Unknowns: three displacements [mm] per node, then a pressure [MPa] per corner.
+/// A body some of whose displacements are prescribed. Unknowns: three displacements [mm] per node, then a
+/// pressure [MPa] per corner.
 class Rubber {
  public:
   /// `prescribed(node, axis)`: is this displacement given, not sought?
@@ -98,8 +102,8 @@ class Rubber {
   const Eigen::VectorXd& forces() const { return force_; }
   int equations() const { return equations_; }
 
-  /// Moves the prescribed displacements by those of `increment` and finds equilibrium. False, and nothing changed, where Newton's method
-  /// does not get there. `linear`: one step from rest, small strain.
+  /// Moves the prescribed displacements by those of `increment` and finds equilibrium. False, and nothing
+  /// changed, where Newton's method does not get there. `linear`: one step from rest, small strain.
   bool step(const Eigen::VectorXd& increment, bool linear = false) {
     const Eigen::VectorXd before = x_;
     const double size = increment.cwiseAbs().maxCoeff();
@@ -122,8 +126,8 @@ class Rubber {
     x_ = before;
     return false;
   }
-  /// Finds equilibrium with a sphere, first from `guess`, then from the state by softer penalties. False, and nothing changed, where neither gets
-  /// there. Faces are those of the first call.
+  /// Finds equilibrium with a sphere, first from `guess`, then from the state by softer penalties. False, and
+  /// nothing changed, where neither gets there. Faces are those of the first call.
   bool settle(const RigidSphere& sphere, const Eigen::VectorXd& guess) {
     const Eigen::VectorXd before = x_;
     sphere_ = sphere;
@@ -237,8 +241,8 @@ class Rubber {
     return true;
   }
 
-  // Adds one of Newton's steps to the state, the first of an increment with its prescribed part. The largest displacement, or -1 where
-  // there is none to be had.
+  // Adds one of Newton's steps to the state, the first of an increment with its prescribed part. The largest
+  // displacement, or -1 where there is none to be had.
   double newton_step(const Eigen::VectorXd* increment) {
     Eigen::VectorXd b;
     if (!assemble(increment, b) || !std::isfinite(b.norm())) return -1;

@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Runs one reference case through the beam skeleton and writes the displacements that judge_case reads, beside the case's own force.csv.
+/// @file Runs one reference case through the beam skeleton and writes the displacements that judge_case
+/// reads, beside the case's own force.csv.
 ///
 ///     skeleton_cases CASE_DIR displacement.csv linear|phong
 ///
-/// CASE_DIR holds meta.json, surface.obj(.gz) and force.csv; its body is an ellipsoid or a box, its contacts are patches.
-/// Each contact has the reference's force and depth: what is judged is the shape alone, and nothing is tuned. The paper's
-/// model: beams of constant volume to the curvature extremal points, the lowest point of the body fixed, no local
-/// neighbourhood (the depth is given).
+/// CASE_DIR holds meta.json, surface.obj(.gz) and force.csv; its body is an ellipsoid or a box, its contacts
+/// are patches. Each contact has the reference's force and depth: what is judged is the shape alone, and
+/// nothing is tuned. The paper's model: beams of constant volume to the curvature extremal points, the lowest
+/// point of the body fixed, no local neighbourhood (the depth is given).
 
 #include "truth/case.hpp"
 
-#include <palpate/deformation/beam_skeleton.hpp>
-#include <palpate/interpolation/linear.hpp>
-#include <palpate/interpolation/phong.hpp>
-#include <palpate/surface/box.hpp>
-#include <palpate/surface/ellipsoid.hpp>
+#include <palpate/geometry/box.hpp>
+#include <palpate/geometry/ellipsoid.hpp>
+#include <palpate/luo_xiao/beam_skeleton.hpp>
+#include <palpate/luo_xiao/interpolation/linear.hpp>
+#include <palpate/luo_xiao/interpolation/phong.hpp>
 
 #include <cmath>
 #include <map>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  A body meshed by gmsh for finite elements: curved ten-node tetrahedra, finest at the patches' edges and the held rim.
+/// @file A body meshed by gmsh for finite elements: curved ten-node tetrahedra, finest at the patches' edges
+/// and the held rim.
 ///
 /// Lengths in mm. A body with a plane of symmetry is meshed on its positive side only.
 
@@ -14,7 +15,8 @@
 
 namespace bench {
 
-/// Box and cylinder stand on y = 0, about the axis y, and are held there; the ellipsoid is centred, held at y <= held.
+/// Box and cylinder stand on y = 0, about the axis y, and are held there; the ellipsoid is centred, held at y
+/// <= held.
 struct Body {
   enum { box, cylinder, ellipsoid } kind;
   V size;           ///< box: edges; cylinder: radius, height, radius; ellipsoid: semi-axes [mm]
@@ -41,8 +43,9 @@ std::string text(const Parts&... parts) {
   return out.str();
 }
 
-/// A script for gmsh. Edges: at a patch's rim radius / fineness, growing by a third of the distance, at most a seventh of the body. A ball's
-/// contact grows: at a seventh of its radius from the middle 0.56 radius / fineness, growing by a ninth.
+/// A script for gmsh. Edges: at a patch's rim radius / fineness, growing by a third of the distance, at most
+/// a seventh of the body. A ball's contact grows: at a seventh of its radius from the middle 0.56 radius /
+/// fineness, growing by a ninth.
 class GmshScript {
  public:
   GmshScript(const Body& body, const std::vector<Patch>& patches, bool ball, double fineness)

@@ -8,9 +8,9 @@
 
 #include "truth/case.hpp"
 
+#include <palpate/geometry/ellipsoid.hpp>
+#include <palpate/geometry/mesh_extremal_points.hpp>
 #include <palpate/response/response_contact.hpp>
-#include <palpate/surface/ellipsoid.hpp>
-#include <palpate/surface/mesh_extremal_points.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -24,24 +24,32 @@ namespace {
 
 std::size_t nearest_vertex(const palpate::MeshData<double>& mesh, const V& p) {
   const auto distance = [&p](const V& v) { return (v - p).squaredNorm(); };
-  return static_cast<std::size_t>(std::ranges::min_element(mesh.vertices, {}, distance) - mesh.vertices.begin());
+  return static_cast<std::size_t>(std::ranges::min_element(mesh.vertices, {}, distance) -
+                                  mesh.vertices.begin());
 }
 
-/// k1 + k2 [1/m] at a place: an ellipsoid's if there are semi-axes, centred at the origin unless its geometry says otherwise; else the
-/// mesh's, averaged over half a ball's radius.
-double curvature_at(const V& place, double radius, const palpate::MeshData<double>& mesh, const std::string& meta) {
+/// k1 + k2 [1/m] at a place: an ellipsoid's if there are semi-axes, centred at the origin unless its geometry
+/// says otherwise; else the mesh's, averaged over half a ball's radius.
+double curvature_at(const V& place, double radius, const palpate::MeshData<double>& mesh,
+                    const std::string& meta) {
   if (const auto axes = numbers(meta, "semi_axes_m"); !axes.empty()) {
     const std::size_t geometry = meta.find("\"geometry\"");  // a contact, too, has a centre
-    const auto centre = geometry == std::string::npos ? std::vector<double>{} : numbers(meta, "centre_m", geometry, meta.find('}', geometry));
-    const palpate::Ellipsoid<double> body({.axes = vector(axes), .centre = centre.empty() ? V(V::Zero()) : vector(centre)});
+    const auto centre = geometry == std::string::npos
+                            ? std::vector<double>{}
+                            : numbers(meta, "centre_m", geometry, meta.find('}', geometry));
+    const palpate::Ellipsoid<double> body(
+        {.axes = vector(axes), .centre = centre.empty() ? V(V::Zero()) : vector(centre)});
     const auto k = body.curvature(place);
     return k.k1 + k.k2;
   }
-  return 2 * palpate::mean_curvature(palpate::TriangleMesh<double>(mesh), 0.5 * radius)[nearest_vertex(mesh, place)];
+  return 2 * palpate::mean_curvature(palpate::TriangleMesh<double>(mesh),
+                                     0.5 * radius)[nearest_vertex(mesh, place)];
 }
 
-/// The fixed region: what lies below a plane, if that is what vertices.csv says, else where the nearest vertex is fixed.
-palpate::FixedRegion fixed_region(const std::string& folder, const palpate::MeshData<double>& mesh, const std::string& meta) {
+/// The fixed region: what lies below a plane, if that is what vertices.csv says, else where the nearest
+/// vertex is fixed.
+palpate::FixedRegion fixed_region(const std::string& folder, const palpate::MeshData<double>& mesh,
+                                  const std::string& meta) {
   const auto y_max = numbers(meta, "y_max_m");
   double y_low = 1e30;
   for (const V& v : mesh.vertices) y_low = (std::min)(y_low, v.y());
@@ -71,8 +79,9 @@ int main(int argc, char** argv) {
   const auto t0 = std::chrono::steady_clock::now();
   const palpate::ResponseField field(mesh, fixed_region(folder, mesh, meta), params);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count();
-  std::printf("%s: %zu solve vertices, %zu touchable nodes, %.1f MB, set-up %.2f s\n", argv[1], field.mesh().vertices.size(),
-              field.touch().nodes().size(), double(field.memory()) / 1e6, seconds);
+  std::printf("%s: %zu solve vertices, %zu touchable nodes, %.1f MB, set-up %.2f s\n", argv[1],
+              field.mesh().vertices.size(), field.touch().nodes().size(), double(field.memory()) / 1e6,
+              seconds);
   palpate::ResponseTick<4> tick(field, {.second_order = argc <= 5});
   const palpate::ResponseDisplay display(field, mesh.vertices);
 
@@ -86,16 +95,19 @@ int main(int argc, char** argv) {
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
       std::fprintf(displacement, "%.9g,%zu,%.9g,%.9g,%.9g\n", depth, v, u[3 * v], u[3 * v + 1], u[3 * v + 2]);
     for (std::size_t c = 0; c < F.size(); ++c)
-      std::fprintf(force, "%.9g,%zu,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", depth, c + 1, F[c].x(), F[c].y(), F[c].z(), T[c].x(), T[c].y(), T[c].z());
+      std::fprintf(force, "%.9g,%zu,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g\n", depth, c + 1, F[c].x(), F[c].y(),
+                   F[c].z(), T[c].x(), T[c].y(), T[c].z());
   };
   const auto depths = numbers(meta, "depths_m");
   const std::size_t ball = meta.find("\"indenter\"");
   if (ball != std::string::npos) {
-    const V place = vector(numbers(meta, "first_touch_point_m", ball)), normal = -vector(numbers(meta, "inward_normal", ball));
+    const V place = vector(numbers(meta, "first_touch_point_m", ball)),
+            normal = -vector(numbers(meta, "inward_normal", ball));
     const double radius = numbers(meta, "radius_m", ball).at(0);
     const double curvature = curvature_at(place, radius, mesh, meta);
     for (double depth : depths) {
-      const auto pressed = tick.solve(palpate::SphereContact<double>{place, normal, radius, curvature, depth});
+      const auto pressed =
+          tick.solve(palpate::SphereContact<double>{place, normal, radius, curvature, depth});
       write(depth, {pressed.on_body(normal)}, {V::Zero()});
     }
   } else {
@@ -103,7 +115,11 @@ int main(int argc, char** argv) {
     for (double depth : depths) {
       std::vector<palpate::ResponseContact<double>> contacts;
       for (const Patch& p : patches)
-        contacts.push_back({.place = p.place, .normal = p.normal, .radius = p.radius, .displacement = depth * p.factor * p.direction, .rotation = depth * p.turn});
+        contacts.push_back({.place = p.place,
+                            .normal = p.normal,
+                            .radius = p.radius,
+                            .displacement = depth * p.factor * p.direction,
+                            .rotation = depth * p.turn});
       std::vector<V> F(contacts.size()), T(contacts.size());
       tick.solve(contacts.data(), contacts.size(), F.data(), T.data());
       write(depth, F, T);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Run time against error of the force path's parts, beside methods that the library does not ship. Methods that it
-/// does ship begin with "palpate". Errors are relative; time_ns is for one evaluation, one tick, or one path, as the
-/// setting says. Error figures of the library have bounds, and the program fails above them.
+/// @file Run time against error of the force path's parts, beside methods that the library does not ship.
+/// Methods that it does ship begin with "palpate". Errors are relative; time_ns is for one evaluation, one
+/// tick, or one path, as the setting says. Error figures of the library have bounds, and the program fails
+/// above them.
 
 #include "scenes.hpp"
 #include "work_precision_force/methods.hpp"
@@ -31,7 +32,8 @@ struct Table {
   }
 };
 
-// ---- the law's inverse -----------------------------------------------------------------------------------------------
+// ---- the law's inverse
+// -----------------------------------------------------------------------------------------------
 
 template <class S>
 void inverse(const Table& table) {
@@ -80,7 +82,8 @@ void inverse(const Table& table) {
   }
 }
 
-// ---- a region's force under refinement of the tool's points ----------------------------------------------------------
+// ---- a region's force under refinement of the tool's points
+// ----------------------------------------------------------
 
 constexpr double R = 0.05, tool_radius = 0.015, nominal_area = 1e-4;  // paraboloid y = r^2 / (2 R) [m]
 
@@ -140,7 +143,8 @@ void region_force(const Table& table, bool quick) {
   std::vector<double> exact(poses.size());
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const double d = 5e-4 + 1e-3 * double(i) / double(poses.size());
-    // Box face at y = 0; sideways moves do not change the answer on a flat face, a turn about y mixes the points' order.
+    // Box face at y = 0; sideways moves do not change the answer on a flat face, a turn about y mixes the
+    // points' order.
     poses[i].translation = Vec3<S>(S(1e-4 * double(i % 5)), S(-d), S(7e-5 * double(i % 7)));
     exact[i] = 2 * std::numbers::pi * R * law.energy(d) / nominal_area;
   }
@@ -167,7 +171,8 @@ void region_force(const Table& table, bool quick) {
   };
   for (const int n : {16, 64, 256, 1024, 4096, 16384}) {
     if (quick && n > 5000) continue;
-    // A grid's sum of a function that ends with a kink: below 1/n is the second order it must have, 2 the constant.
+    // A grid's sum of a function that ends with a kink: below 1/n is the second order it must have, 2 the
+    // constant.
     measure("palpate by area square grid", grid(n, false), SingleRegion<>{},
             n >= 64 ? 2.0 / std::sqrt(double(n)) : 0);
     measure("palpate by area hexagonal grid", grid(n, true), SingleRegion<>{});
@@ -177,7 +182,8 @@ void region_force(const Table& table, bool quick) {
   }
 }
 
-// ---- friction along a path -------------------------------------------------------------------------------------------
+// ---- friction along a path
+// -------------------------------------------------------------------------------------------
 
 constexpr int check_points = 32;
 
@@ -246,7 +252,8 @@ void friction_path(const Table& table, bool quick) {
       const double ns = least_ns((std::min)(table.repeats, 10), [&] { use(f()); });
       table.row("friction path", method, scalar_name<S>, setting, ns, error, reference, bound);
     };
-    // First order in the step: the path of 26 mm in 1,024 ticks is good to a percent, half that in half the step.
+    // First order in the step: the path of 26 mm in 1,024 ticks is good to a percent, half that in half the
+    // step.
     measure(
         "palpate return mapping", [&] { return follow<S, ReturnMapping>(ticks); },
         ticks >= 1024 ? 10.0 / ticks + 1e-4 : 0);
@@ -255,7 +262,8 @@ void friction_path(const Table& table, bool quick) {
   }
 }
 
-// ---- closest point of an ellipsoid ---------------------------------------------------------------------------------
+// ---- closest point of an ellipsoid
+// ---------------------------------------------------------------------------------
 
 template <class S>
 void closest_point(const Table& table, const char* problem, double least, double most) {
@@ -329,7 +337,8 @@ void closest_point(const Table& table, const char* problem, double least, double
   measure("along the radius", "closed", [&](const Vec3<S>& at) { return textbook.radial(at); });
 }
 
-// ---- float against double: the whole force tick ----------------------------------------------------------------------
+// ---- float against double: the whole force tick
+// ----------------------------------------------------------------------
 
 template <class S>
 void whole_tick(const Table& table, double bound) {
@@ -360,7 +369,8 @@ void whole_tick(const Table& table, double bound) {
   }
 }
 
-// ---- the oscillator (1), undamped and free ---------------------------------------------------------------------------
+// ---- the oscillator (1), undamped and free
+// ---------------------------------------------------------------------------
 
 template <class S>
 void transient(const Table& table, bool quick) {

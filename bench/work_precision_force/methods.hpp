@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Methods that the library does not ship, to compare it with: textbook forms, written as a user would.
+/// @file Methods that the library does not ship, to compare it with: textbook forms, written as a user would.
 
 #include <palpate/core/vector.hpp>
 

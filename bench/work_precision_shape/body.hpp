@@ -3,9 +3,9 @@
 
 /// @file  The two reference bodies: data, tetrahedra that fit them, and how a shape is judged.
 
+#include <palpate/contact/contact_state.hpp>
 #include <palpate/core/vector.hpp>
-#include <palpate/equivalent/contact_state.hpp>
-#include <palpate/surface/lattice_mesh.hpp>
+#include <palpate/geometry/detail/lattice_mesh.hpp>
 
 #include <algorithm>
 #include <array>
@@ -93,7 +93,8 @@ inline palpate::ContactState<double> pressed(const Truth& t, double d, double F)
   return contact;
 }
 
-/// Relative errors of a shape at one depth: area weighted L2, the same beyond two patch radii, largest over largest.
+/// Relative errors of a shape at one depth: area weighted L2, the same beyond two patch radii, largest over
+/// largest.
 struct ShapeError {
   double l2 = 0, far_l2 = 0, most = 0;
 };
@@ -114,9 +115,11 @@ inline ShapeError judge(const Truth& t, std::size_t depth, const std::vector<V>&
   return {std::sqrt(e / n), std::sqrt(far_e / far_n), std::sqrt(most / largest)};
 }
 
-/// Tetrahedra of 4 or 10 nodes for a reference body: a cube's lattice, 2n cells across, mapped to the body so that one ring of
-/// its top face is the patch's rim and (ellipsoid) one ring of its bottom face the rim of the fixed cap. Cells are thin and
-/// small at the patch: rings, blend and layers were chosen for the least error of linear finite elements. A cell is cut in six along the diagonal that points outwards, so that no tetrahedron is flat.
+/// Tetrahedra of 4 or 10 nodes for a reference body: a cube's lattice, 2n cells across, mapped to the body so
+/// that one ring of its top face is the patch's rim and (ellipsoid) one ring of its bottom face the rim of
+/// the fixed cap. Cells are thin and small at the patch: rings, blend and layers were chosen for the least
+/// error of linear finite elements. A cell is cut in six along the diagonal that points outwards, so that no
+/// tetrahedron is flat.
 struct Tetrahedra {
   std::vector<V> node;
   std::vector<std::array<std::uint32_t, 10>> element;  // corners; then the middles of 01 12 20 03 13 23
@@ -270,7 +273,8 @@ inline void shape(int order, const std::array<double, 4>& b, std::array<double, 
   }
 }
 
-/// Display vertices held by the tetrahedra: nodes and weights of the element that contains or is nearest to each.
+/// Display vertices held by the tetrahedra: nodes and weights of the element that contains or is nearest to
+/// each.
 class Embedding {
  public:
   Embedding(const Tetrahedra& mesh, const Truth& truth)

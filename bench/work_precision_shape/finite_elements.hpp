@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Baselines by finite elements: linear, with a Cholesky factor made at set-up, and co-rotational with the same factor.
+/// @file Baselines by finite elements: linear, with a Cholesky factor made at set-up, and co-rotational with
+/// the same factor.
 
 #include "work_precision_shape/body.hpp"
 
@@ -132,8 +133,8 @@ class FiniteElements {
     for (std::size_t v = 0; v < u_.size(); ++v)
       u_[v] = number_[v] >= 0 ? V(x.segment<3>(3 * number_[v])) : mesh_.patch[v] ? tool : V(V::Zero());
   }
-  // Nodal forces R K (R^T x - X), R the rotation of the gradient at the element's centre; linear: R = 1, and only the
-  // elements at the patch are needed.
+  // Nodal forces R K (R^T x - X), R the rotation of the gradient at the element's centre; linear: R = 1, and
+  // only the elements at the patch are needed.
   void internal_force(bool rotated) {
     std::fill(f_.begin(), f_.end(), V::Zero());
     const std::size_t count = std::size_t(mesh_.corners());

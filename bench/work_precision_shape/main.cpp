@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Run time against error of the deformed shape, against nonlinear finite elements (truth/data): what the library ships
-/// ("palpate ...") and baselines that a user might pick instead.
+/// @file Run time against error of the deformed shape, against nonlinear finite elements (truth/data): what
+/// the library ships ("palpate ...") and baselines that a user might pick instead.
 ///
-/// A stuck patch goes straight down, 20 ticks per millimetre, to 8 mm. time_us is the mean tick's processor time (so that others
-/// on the machine count little), display included (1,792 and 1,954 vertices); vertices are those that the model computes with. Errors are relative, means over depths of 1, 2, 4 and 8 mm;
+/// A stuck patch goes straight down, 20 ticks per millimetre, to 8 mm. time_us is the mean tick's processor
+/// time (so that others on the machine count little), display included (1,792 and 1,954 vertices); vertices
+/// are those that the model computes with. Errors are relative, means over depths of 1, 2, 4 and 8 mm;
 /// force_error_rms is over the same depths.
 ///
-/// In the baselines' favour: the finite elements and the springs know the contact's place at set-up, their meshes are fitted
-/// to the patch, and the springs' stiffness is fitted to the first depth's force.
-/// Their display vertices within the patch take the tool's displacement.
+/// In the baselines' favour: the finite elements and the springs know the contact's place at set-up, their
+/// meshes are fitted to the patch, and the springs' stiffness is fitted to the first depth's force. Their
+/// display vertices within the patch take the tool's displacement.
 
 #include "scenes.hpp"
 #include "work_precision_shape/finite_elements.hpp"
 #include "work_precision_shape/particles.hpp"
 
-#include <palpate/deformation/half_space.hpp>
+#include <palpate/elasticity/half_space.hpp>
 #include <palpate/response/response_contact.hpp>
 #include <palpate/response/response_display.hpp>
 
@@ -32,7 +33,8 @@ struct Table {
   const Output& out;
   const Truth& truth;
 
-  /// `tick(depth)` moves on to a depth and returns the force [N]; `shape()` is the displacement of the display vertices.
+  /// `tick(depth)` moves on to a depth and returns the force [N]; `shape()` is the displacement of the
+  /// display vertices.
   void row(const std::string& model, const char* scalar, std::size_t vertices, double setup_ms,
            const std::function<double(double)>& tick, const std::function<const std::vector<V>&()>& shape,
            const std::function<void()>& reset, double bound = 0, int repeats = 3,
@@ -295,7 +297,8 @@ void all(const Output& out, const Truth& truth) {
   }
   // 0.12 and 0.18 on these bodies: its sides are not free of traction.
   half_space(table, 0.23);
-  // Below 600 vertices the error goes with one over their number; there it is 2 to 3 %, the reference's own included.
+  // Below 600 vertices the error goes with one over their number; there it is 2 to 3 %, the reference's own
+  // included.
   if (out.quick) {
     response(table, 150, 0.1);
     finite_elements(table, 8, 1, 0.45, {2});

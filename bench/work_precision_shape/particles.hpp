@@ -17,7 +17,8 @@ struct Spring {
   double length, k;  // [m], [N/m]
 };
 
-/// Springs along the tetrahedra's edges: k = E V / l^2, V the volume of the tetrahedra around [vangelder1998].
+/// Springs along the tetrahedra's edges: k = E V / l^2, V the volume of the tetrahedra around
+/// [vangelder1998].
 inline std::vector<Spring> springs_of(const Tetrahedra& mesh, double E) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> volume;
   for (const auto& e : mesh.element) {
@@ -35,8 +36,8 @@ inline std::vector<Spring> springs_of(const Tetrahedra& mesh, double E) {
   return springs;
 }
 
-/// Mass-spring model at rest in every tick: each step projects all springs on their rest length, then one back-solve with the
-/// springs' Laplacian [liu2013].
+/// Mass-spring model at rest in every tick: each step projects all springs on their rest length, then one
+/// back-solve with the springs' Laplacian [liu2013].
 class MassSpring {
  public:
   MassSpring(const Tetrahedra& mesh, double E) : mesh_(&mesh), x_(mesh.node), springs_(springs_of(mesh, E)) {
@@ -92,8 +93,9 @@ class MassSpring {
   Eigen::Matrix<double, Eigen::Dynamic, 3> rhs_;
 };
 
-/// Position based dynamics with compliance [macklin2016]: a distance constraint per edge, with the springs' stiffness, and a
-/// volume constraint per tetrahedron, with the bulk modulus. Gauss-Seidel sweeps; velocities are dropped.
+/// Position based dynamics with compliance [macklin2016]: a distance constraint per edge, with the springs'
+/// stiffness, and a volume constraint per tetrahedron, with the bulk modulus. Gauss-Seidel sweeps; velocities
+/// are dropped.
 class PositionBased {
  public:
   struct Settings {

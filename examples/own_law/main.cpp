@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Choosing policies, and writing one: a force law for tissue that is soft at first and stiff when compressed
-/// (Fung's exponential), decorated with damping and a cap, on a rounded box touched by a ball in up to four regions.
+/// @file Choosing policies, and writing one: a force law for tissue that is soft at first and stiff when
+/// compressed (Fung's exponential), decorated with damping and a cap, on a rounded box touched by a ball in
+/// up to four regions.
 
 #include <palpate/palpate.hpp>
 
@@ -50,6 +51,8 @@ int main() {
     const bool sliding = !touch.contacts().empty() && touch.contacts()[0].mode == ContactMode::sliding;
     std::printf("  %7.2f %7.3f %8.3f        %zu     %s\n", 1e3 * pose.translation.x(), felt.wrench.force.x(),
                 felt.wrench.force.y(), touch.contacts().size(),
-                touch.contacts().empty() ? "free" : sliding ? "slip" : "stick");
+                touch.contacts().empty() ? "free"
+                : sliding                ? "slip"
+                                         : "stick");
   }
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  What the servo thread does in a tick and what it hands over: the solver, and the sums over its regions.
+/// @file What the servo thread does in a tick and what it hands over: the solver, and the sums over its
+/// regions.
 
-#include <palpate/beam/regions.hpp>
 #include <palpate/detection/swept_pose.hpp>
 #include <palpate/device/energy_limit.hpp>
+#include <palpate/luo_xiao/beam/regions.hpp>
 #include <palpate/palpate.hpp>
 
 #include <optional>
@@ -23,8 +24,8 @@ struct Felt {
   palpate::Status status = palpate::Status::ok;
   std::uint32_t regions = 0;
   bool sliding = false;
-  V normal = V::Zero();    ///< normal part of the force [N]
-  V friction = V::Zero();  ///< friction part [N]
+  V normal = V::Zero();                                                   ///< normal part of the force [N]
+  V friction = V::Zero();                                                 ///< friction part [N]
   palpate::FixedVector<palpate::ContactState<S>, most_regions> contacts;  ///< what the shape is made of
 };
 
@@ -38,9 +39,9 @@ struct FollowNothing {
 template <class Solver, class Follow = FollowNothing>
 struct Feel {
   Solver solver;
-  std::optional<palpate::SweptPose<S>> sweep{};  ///< holds the tool back; empty: never
+  std::optional<palpate::SweptPose<S>> sweep{};    ///< holds the tool back; empty: never
   std::optional<palpate::EnergyLimit<S>> limit{};  ///< for an object whose force is not passive by itself
-  Follow follow{};                               ///< what the object does after a tick, for the next one
+  Follow follow{};                                 ///< what the object does after a tick, for the next one
 
   Felt tick(const palpate::Pose<S>& X, S dt) noexcept {
     palpate::HeldPose<S> at{X, palpate::Status::ok};
@@ -69,20 +70,21 @@ struct Feel {
 
 /// The example's solver over any body.
 template <class Body, class Coupling = palpate::IndependentRegions, class Force = palpate::DuffingForce<S>>
-using Contact = palpate::ContactSolver<Body, Force, palpate::PowerLawFriction<S>, palpate::Regions<most_regions>,
-                                       palpate::AtContact, Coupling>;
+using Contact = palpate::ContactSolver<Body, Force, palpate::PowerLawFriction<S>,
+                                       palpate::Regions<most_regions>, palpate::AtContact, Coupling>;
 
 /// The paper's parameters (section VII): lengths in mm, m = 1 kg, and K = 10 read in dyn.
 inline const palpate::DuffingForce<S> paper_force({.c1 = 40, .c3 = 3e8});
 
 template <class Body, class Force, class Coupling = palpate::IndependentRegions>
-[[nodiscard]] Contact<Body, Coupling, Force> make_contact(const Body& body, const Tool& tool, const Force& force,
-                                                          const Coupling& coupling = {}) {
+[[nodiscard]] Contact<Body, Coupling, Force> make_contact(const Body& body, const Tool& tool,
+                                                          const Force& force, const Coupling& coupling = {}) {
   using namespace palpate;
   return Contact<Body, Coupling, Force>({
       .object = body,
       .tool = ToolPoints<S>(TriangleMesh<S>(tool.mesh),
-                            {.contact_area = tool.contact_area, .centre_of_mass = tool.centre_of_mass}, tool.spacing),
+                            {.contact_area = tool.contact_area, .centre_of_mass = tool.centre_of_mass},
+                            tool.spacing),
       .force = force,
       .friction = PowerLawFriction<S>(
           {.K = PowerLawFriction<S>::si_coefficient(10, 0.75, 1e-5), .beta = 0.75, .mu_dynamic = 0.3}),

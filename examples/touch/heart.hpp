@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  A smooth heart: a surface of the example's own that meets ParametricSurface, with extremal points of its own.
+/// @file A smooth heart: a surface of the example's own that meets ParametricSurface, with extremal points of
+/// its own.
 
-#include <palpate/surface/extremal_points.hpp>
-#include <palpate/surface/lattice_mesh.hpp>
-#include <palpate/surface/shape_tools.hpp>
+#include <palpate/geometry/detail/lattice_mesh.hpp>
+#include <palpate/geometry/detail/shape_tools.hpp>
+#include <palpate/geometry/extremal_points.hpp>
 
 #include <array>
 #include <cmath>
@@ -21,10 +22,11 @@ namespace touch {
 /// | a            | `size`      | m    | [1e-3, 1]                                                         |
 /// | m, h, kappa  | `bumps`     | -    | unit directions, heights, sharpness; fixed by the shape           |
 ///
-/// r is analytic, so closest() may use Newton's method: on the tangent plane, with the surface's own curvature, back to
-/// the surface along the ray from the origin, a step taken only if it comes closer. It starts from the point on the ray of
-/// x. Where that is nearer than reach() there is one critical point of the distance within reach, which is the closest
-/// point [federer1959]; deeper, or far outside the cleft, the answer is a local minimum. At most 25 steps.
+/// r is analytic, so closest() may use Newton's method: on the tangent plane, with the surface's own
+/// curvature, back to the surface along the ray from the origin, a step taken only if it comes closer. It
+/// starts from the point on the ray of x. Where that is nearer than reach() there is one critical point of
+/// the distance within reach, which is the closest point [federer1959]; deeper, or far outside the cleft, the
+/// answer is a local minimum. At most 25 steps.
 class Heart {
  public:
   using Scalar = double;
@@ -44,7 +46,8 @@ class Heart {
 
   [[nodiscard]] palpate::SurfacePoint<S> closest(const V& x) const noexcept {
     const double size = x.cwiseAbs().maxCoeff();
-    if (!palpate::is_finite(x)) return palpate::detail::nowhere<S>(on_ray(V::UnitX()), normal(on_ray(V::UnitX())));
+    if (!palpate::is_finite(x))
+      return palpate::detail::nowhere<S>(on_ray(V::UnitX()), normal(on_ray(V::UnitX())));
     if (size > 1e6) {  // a direction is all that counts from there
       palpate::SurfacePoint<S> far = closest(V(x / size * 1e6));
       far.distance = (std::min)(size, 1e300);
@@ -56,7 +59,8 @@ class Heart {
       const Local at = local(p, true);
       const V gap = x - p, across = gap - at.normal * at.normal.dot(gap);
       if (across.squaredNorm() <= 1e-28 * p.squaredNorm()) break;
-      // Half the squared distance has the Hessian 1 + h W on the tangent plane, W the shape operator; kept positive.
+      // Half the squared distance has the Hessian 1 + h W on the tangent plane, W the shape operator; kept
+      // positive.
       const palpate::Curvature<S> c = palpate::detail::principal<S>(at.normal, at.shape);
       const double h = at.normal.dot(gap);
       V move = c.dir1 * (c.dir1.dot(across) / (std::max)(0.1, 1 + h * c.k1)) +
@@ -75,7 +79,8 @@ class Heart {
   }
 
   [[nodiscard]] palpate::Penetration<S> penetration(const V& x) const noexcept {
-    if (!palpate::is_finite(x) || x.squaredNorm() > largest_ * largest_ || !(implicit(x) < 0)) return {0, V::Zero()};
+    if (!palpate::is_finite(x) || x.squaredNorm() > largest_ * largest_ || !(implicit(x) < 0))
+      return {0, V::Zero()};
     const palpate::SurfacePoint<S> foot = closest(x);
     return {-foot.distance, foot.normal};
   }
@@ -88,10 +93,12 @@ class Heart {
     return implicit(c) > slope_ * r * palpate::detail::separation_guard<S>;
   }
 
-  /// Sphere tracing with the same bound, then bisection. Its steps shrink at a grazing ray; after 400 it is a miss.
+  /// Sphere tracing with the same bound, then bisection. Its steps shrink at a grazing ray; after 400 it is a
+  /// miss.
   [[nodiscard]] palpate::RayHit<S> raycast(const V& origin, const V& d) const noexcept {
     const double length = d.norm();
-    if (!palpate::is_finite(origin) || !palpate::is_finite(d) || !(length > 0)) return palpate::detail::no_hit<S>();
+    if (!palpate::is_finite(origin) || !palpate::is_finite(d) || !(length > 0))
+      return palpate::detail::no_hit<S>();
     const V u = d / length;
     const bool outside = implicit(origin) > 0;
     double t = 0, step = 0;
@@ -167,7 +174,8 @@ class Heart {
     V g = V::Zero();  // of r, as a function of u in space
     M H = M::Zero();
     for (const Bump& b : bumps) {
-      const double first = p_.size * b.height * b.sharpness * std::exp(b.sharpness * (u.dot(b.direction) - 1));
+      const double first =
+          p_.size * b.height * b.sharpness * std::exp(b.sharpness * (u.dot(b.direction) - 1));
       g += first * b.direction;
       if (with_shape) H += first * b.sharpness * b.direction * b.direction.transpose();
     }
@@ -181,7 +189,8 @@ class Heart {
     return at;
   }
 
-  [[nodiscard]] palpate::RayHit<S> refine(const V& origin, const V& u, double low, double high, double length) const noexcept {
+  [[nodiscard]] palpate::RayHit<S> refine(const V& origin, const V& u, double low, double high,
+                                          double length) const noexcept {
     const bool sign = implicit(origin + low * u) > 0;
     for (int i = 0; i < 60; ++i) {
       const double middle = 0.5 * (low + high);
@@ -190,7 +199,8 @@ class Heart {
     return {true, origin + high * u, high / length};
   }
 
-  // Bounds for the queries. The slope's is rigorous (each bump at its steepest); reach is taken from a fine sampling.
+  // Bounds for the queries. The slope's is rigorous (each bump at its steepest); reach is taken from a fine
+  // sampling.
   void measure() {
     double steepest = 0;
     for (const Bump& b : bumps) {

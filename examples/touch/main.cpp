@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  The main job: a tool held by a haptic device presses and slides on an elastic object, and the hand gets the
-/// force of the paper's sections II to IV. Writes forces.csv and a plot script for it; a scene (scenes.cpp) also writes
-/// shapes and pictures. Without the vendor's SDK the stand-in device of examples/standin takes its place, with a
-/// scripted hand.
+/// @file The main job: a tool held by a haptic device presses and slides on an elastic object, and the hand
+/// gets the force of the paper's sections II to IV. Writes forces.csv and a plot script for it; a scene
+/// (scenes.cpp) also writes shapes and pictures. Without the vendor's SDK the stand-in device of
+/// examples/standin takes its place, with a scripted hand.
 
 #include "play.hpp"
 #include "scenes.hpp"
 
-#include <palpate/surface/mesh_surface.hpp>
+#include <palpate/geometry/mesh_surface.hpp>
 
 #include <exception>
 
@@ -19,16 +19,18 @@ using namespace palpate;
 template <class Body>
 int run(Options options, const Body& body, MeshData<S> display, const char* shape) {
   if (options.shape.empty()) options.shape = shape;
-  return play(options, Scene<Body>{.title = "object " + std::filesystem::path(options.object).stem().string() + ", tool " + options.tool + ", script " + options.script,
-                                   .body = body,
-                                   .display = std::move(display),
-                                   .tool = options.tool,
-                                   .force = paper_force,
-                                   .coupling = {},
-                                   .view = view_of(body),
-                                   .script = [](const Options& o, const Body& b, const Tool& tool) {
-                                     return make_script(o, b, tool.mesh);
-                                   }});
+  return play(options,
+              Scene<Body>{.title = "object " + std::filesystem::path(options.object).stem().string() +
+                                   ", tool " + options.tool + ", script " + options.script,
+                          .body = body,
+                          .display = std::move(display),
+                          .tool = options.tool,
+                          .force = paper_force,
+                          .coupling = {},
+                          .view = view_of(body),
+                          .script = [](const Options& o, const Body& b, const Tool& tool) {
+                            return make_script(o, b, tool.mesh);
+                          }});
 }
 
 template <class Body>
@@ -44,9 +46,10 @@ int run_file(const Options& options) {
   for (V& v : mesh.vertices) v -= (low + high) / 2;
   const V size = 1e3 * (high - low);
   const MeshSurface<S> body{TriangleMesh<S>(mesh)};
-  std::printf("%s: %zu vertices, %zu triangles, %.0f x %.0f x %.0f mm\n", options.object.c_str(), mesh.vertices.size(),
-              mesh.triangles.size(), size.x(), size.y(), size.z());
-  if (!(size.maxCoeff() > 10 && size.maxCoeff() < 1000)) std::printf("note           the tools are 3 to 60 mm wide: is --scale right?\n");
+  std::printf("%s: %zu vertices, %zu triangles, %.0f x %.0f x %.0f mm\n", options.object.c_str(),
+              mesh.vertices.size(), mesh.triangles.size(), size.x(), size.y(), size.z());
+  if (!(size.maxCoeff() > 10 && size.maxCoeff() < 1000))
+    std::printf("note           the tools are 3 to 60 mm wide: is --scale right?\n");
   return run(options, body, std::move(mesh), "half-space");
 }
 
@@ -65,7 +68,8 @@ int main(int argc, char** argv) {
     if (options.object == "sphere") return run(options, Sphere<S>({.radius = 0.05}));
     if (options.object == "box") return run(options, Box<S>({.half = V(0.05, 0.04, 0.05)}));
     if (options.object == "cylinder") return run(options, Cylinder<S>({.radius = 0.05, .half_height = 0.04}));
-    if (options.object == "superellipsoid") return run(options, Superellipsoid<S>({.axes = V(0.06, 0.04, 0.05)}));
+    if (options.object == "superellipsoid")
+      return run(options, Superellipsoid<S>({.axes = V(0.06, 0.04, 0.05)}));
     if (is_mesh_file(options.object)) return run_file(options);
     refuse("unknown object " + options.object);
   } catch (const std::exception& error) {

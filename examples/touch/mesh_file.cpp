@@ -44,9 +44,9 @@ V as_in_file(const V& x, char up) {
   return up == 'y' ? x : up == 'z' ? V(x.x(), -x.z(), x.y()) : V(x.y(), -x.x(), x.z());
 }
 
-/// Vertices that fall into one cell of a grid of the given spacing, 0: of bitwise one place, become the first of them.
-/// Two that are close but on both sides of a cell's border are joined through the eight cells that a ball around a
-/// vertex can meet.
+/// Vertices that fall into one cell of a grid of the given spacing, 0: of bitwise one place, become the first
+/// of them. Two that are close but on both sides of a cell's border are joined through the eight cells that a
+/// ball around a vertex can meet.
 std::size_t weld(Mesh& mesh, double spacing) {
   using Key = std::array<double, 3>;
   std::map<Key, std::uint32_t> first;
@@ -104,8 +104,8 @@ std::size_t drop_unused(Mesh& mesh) {
   return dropped;
 }
 
-/// Across every edge of two triangles they run opposite ways, and each part that hangs together has a positive volume.
-/// Counts the triangles that were turned.
+/// Across every edge of two triangles they run opposite ways, and each part that hangs together has a
+/// positive volume. Counts the triangles that were turned.
 std::size_t orient(Mesh& mesh) {
   using Edge = std::pair<std::uint32_t, std::uint32_t>;
   std::map<Edge, std::vector<std::size_t>> sides;
@@ -255,8 +255,8 @@ Polygons parse_with_assimp(const MeshFile& file, std::string_view) {
 
 #endif
 
-/// Cuts a polygon into a fan of triangles about the first corner that sees all others, in the plane of its vector area: every
-/// convex polygon, and some others. False: no corner does.
+/// Cuts a polygon into a fan of triangles about the first corner that sees all others, in the plane of its
+/// vector area: every convex polygon, and some others. False: no corner does.
 bool cut_up(const std::vector<V>& vertices, std::span<const std::uint32_t> polygon, Mesh& mesh) {
   const std::size_t n = polygon.size();
   if (n == 3) return mesh.triangles.push_back({polygon[0], polygon[1], polygon[2]}), true;

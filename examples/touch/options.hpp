@@ -16,15 +16,15 @@ struct Options {
   std::string tool = "mallet";
   std::string script = "figure10";
   std::string out = "out";
-  std::string scene;    ///< empty: none
-  std::string shape;    ///< none, skeleton, half-space or response; empty: what suits the object
-  double scale = 1;     ///< of mesh files
-  char up = 'y';        ///< of mesh files
-  bool repair = false;  ///< of mesh files
-  bool deformed = false;  ///< contact is looked for on the shape as it is now, not on the undeformed one
-  double sweep = 0;     ///< how deep a point may get on its way [m]; 0: as deep as it is taken
+  std::string scene;          ///< empty: none
+  std::string shape;          ///< none, skeleton, half-space or response; empty: what suits the object
+  double scale = 1;           ///< of mesh files
+  char up = 'y';              ///< of mesh files
+  bool repair = false;        ///< of mesh files
+  bool deformed = false;      ///< contact is looked for on the shape as it is now, not on the undeformed one
+  double sweep = 0;           ///< how deep a point may get on its way [m]; 0: as deep as it is taken
   double at_x = 0, at_z = 0;  ///< where the scripts work [m]
-  double rate = 1000;   ///< [Hz]
+  double rate = 1000;         ///< [Hz]
   bool stepped = false;
   bool real_time = false;  ///< of a scene
   bool help = false;
@@ -82,34 +82,53 @@ inline Options parse(int argc, char** argv) {
       const std::string text = value();
       char* end = nullptr;
       const double x = std::strtod(text.c_str(), &end);
-      if (end == text.c_str() || *end != '\0' || !(x > -1e3 && x < 1e3)) refuse(name + " needs two numbers, got " + text);
+      if (end == text.c_str() || *end != '\0' || !(x > -1e3 && x < 1e3))
+        refuse(name + " needs two numbers, got " + text);
       return x;
     };
     const auto where = [&](const std::string& text) {
-      if (text != "deformed" && text != "undeformed") refuse(name + " needs deformed or undeformed, got " + text);
+      if (text != "deformed" && text != "undeformed")
+        refuse(name + " needs deformed or undeformed, got " + text);
       return text == "deformed";
     };
     const auto axis = [&](const std::string& text) {
       if (text != "x" && text != "y" && text != "z") refuse(name + " needs x, y or z, got " + text);
       return text.front();
     };
-    if (name == "--object") options.object = value();
-    else if (name == "--tool") options.tool = value();
-    else if (name == "--shape") options.shape = value();
-    else if (name == "--up") options.up = axis(value());
-    else if (name == "--repair") options.repair = true;
-    else if (name == "--detect") options.deformed = where(value());
-    else if (name == "--sweep") options.sweep = number();
-    else if (name == "--script") options.script = value();
-    else if (name == "--at") options.at_x = place(), options.at_z = place();
-    else if (name == "--out") options.out = value();
-    else if (name == "--scale") options.scale = number();
-    else if (name == "--rate") options.rate = number();
-    else if (name == "--scene") options.scene = value();
-    else if (name == "--stepped") options.stepped = true;
-    else if (name == "--real-time") options.real_time = true;
-    else if (name == "--help" || name == "-h") options.help = true;
-    else refuse("unknown option " + name);
+    if (name == "--object")
+      options.object = value();
+    else if (name == "--tool")
+      options.tool = value();
+    else if (name == "--shape")
+      options.shape = value();
+    else if (name == "--up")
+      options.up = axis(value());
+    else if (name == "--repair")
+      options.repair = true;
+    else if (name == "--detect")
+      options.deformed = where(value());
+    else if (name == "--sweep")
+      options.sweep = number();
+    else if (name == "--script")
+      options.script = value();
+    else if (name == "--at")
+      options.at_x = place(), options.at_z = place();
+    else if (name == "--out")
+      options.out = value();
+    else if (name == "--scale")
+      options.scale = number();
+    else if (name == "--rate")
+      options.rate = number();
+    else if (name == "--scene")
+      options.scene = value();
+    else if (name == "--stepped")
+      options.stepped = true;
+    else if (name == "--real-time")
+      options.real_time = true;
+    else if (name == "--help" || name == "-h")
+      options.help = true;
+    else
+      refuse("unknown option " + name);
   }
   return options;
 }

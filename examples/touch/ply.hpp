@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Polygons of a PLY file. Not through Assimp as the other formats: its reader of PLY files (5.2.5) crashes or hangs
-/// on a tenth of damaged ones.
+/// @file Polygons of a PLY file. Not through Assimp as the other formats: its reader of PLY files (5.2.5)
+/// crashes or hangs on a tenth of damaged ones.
 
 #include <palpate/core/vector.hpp>
 
@@ -19,8 +19,9 @@ struct Polygons {
   std::vector<std::size_t> end;
 };
 
-/// The elements "vertex" (x, y, z) and "face" (vertex_indices or vertex_index) of a PLY file, ASCII or binary; everything
-/// else in it is passed over. The content must be what the header says: what is not is a std::runtime_error.
+/// The elements "vertex" (x, y, z) and "face" (vertex_indices or vertex_index) of a PLY file, ASCII or
+/// binary; everything else in it is passed over. The content must be what the header says: what is not is a
+/// std::runtime_error.
 [[nodiscard]] Polygons parse_ply(std::string_view content);
 
 }  // namespace touch

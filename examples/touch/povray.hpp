@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Frames as scenes for POV-Ray (lengths in mm), and what the legend around the picture needs. render.sh makes the
-/// pictures.
+/// @file Frames as scenes for POV-Ray (lengths in mm), and what the legend around the picture needs.
+/// render.sh makes the pictures.
 
 #include <cstdlib>
 #include <filesystem>
@@ -13,8 +13,8 @@ namespace touch {
 
 /// From where a scene is seen.
 struct View {
-  V from, at;            ///< [mm]
-  double angle = 28;     ///< horizontal field of view [degrees]
+  V from, at;              ///< [mm]
+  double angle = 28;       ///< horizontal field of view [degrees]
   double per_newton = 25;  ///< length of the force arrow [mm/N]
 };
 
@@ -28,8 +28,11 @@ template <class Body>
 }
 
 /// Colours of the displacement from none to most; for POV-Ray and for the legend.
-inline constexpr double palette[][4] = {
-    {0, 0.90, 0.91, 0.92}, {0.2, 0.99, 0.89, 0.62}, {0.45, 0.98, 0.62, 0.30}, {0.7, 0.84, 0.19, 0.18}, {1, 0.38, 0.03, 0.25}};
+inline constexpr double palette[][4] = {{0, 0.90, 0.91, 0.92},
+                                        {0.2, 0.99, 0.89, 0.62},
+                                        {0.45, 0.98, 0.62, 0.30},
+                                        {0.7, 0.84, 0.19, 0.18},
+                                        {1, 0.38, 0.03, 0.25}};
 
 class Pictures {
  public:
@@ -50,14 +53,17 @@ class Pictures {
     for (std::size_t i = 0; i < frames.size(); ++i) {
       write_frame(numbered(folder_ + "/frame", i, ".pov"), frames[i], most);
       const double u = largest(frames[i]);
-      std::fprintf(list.get(), "%03zu,%.3f,%.4f,%u,%.4f\n", i, frames[i].t, frames[i].force().norm(), frames[i].felt.regions, u);
+      std::fprintf(list.get(), "%03zu,%.3f,%.4f,%u,%.4f\n", i, frames[i].t, frames[i].force().norm(),
+                   frames[i].felt.regions, u);
       // The one that stands for all: most regions, then most force.
       const double rank = frames[i].force().norm() + 1e3 * frames[i].felt.regions;
       if (rank > key_rank) key_rank = rank, key = i;
     }
     const File legend = open_file(folder_ + "/legend.gp");
-    std::fprintf(legend.get(), "title = '%s'\nmost = %g\nper_newton = %g\nkey = '%03zu'\nkey_number = %zu\nset palette defined (", title.c_str(),
-                 most, view_.per_newton, key, key);
+    std::fprintf(
+        legend.get(),
+        "title = '%s'\nmost = %g\nper_newton = %g\nkey = '%03zu'\nkey_number = %zu\nset palette defined (",
+        title.c_str(), most, view_.per_newton, key, key);
     const char* comma = "";
     for (const auto& c : palette) {
       std::fprintf(legend.get(), "%s%g %.2f %.2f %.2f", comma, c[0], c[1], c[2], c[3]);
@@ -80,7 +86,9 @@ class Pictures {
     return std::ceil(2 * most) / 2;
   }
 
-  static void vector(std::FILE* out, const V& v) { std::fprintf(out, "<%.4f,%.4f,%.4f>", v.x(), v.y(), v.z()); }
+  static void vector(std::FILE* out, const V& v) {
+    std::fprintf(out, "<%.4f,%.4f,%.4f>", v.x(), v.y(), v.z());
+  }
   static void rod(std::FILE* out, const Rod& r) {
     std::fputs("cylinder{", out);
     vector(out, 1e3 * r.from);
@@ -108,8 +116,10 @@ class Pictures {
   void write_common(double most) const {
     const File file = open_file(folder_ + "/common.inc");
     std::FILE* const out = file.get();
-    std::fputs("#version 3.7;\nglobal_settings{assumed_gamma 1}\nbackground{rgb 1}\n"
-               "// POV-Ray's axes are left-handed; a negative `right` makes them the scene's.\ncamera{location ", out);
+    std::fputs(
+        "#version 3.7;\nglobal_settings{assumed_gamma 1}\nbackground{rgb 1}\n"
+        "// POV-Ray's axes are left-handed; a negative `right` makes them the scene's.\ncamera{location ",
+        out);
     vector(out, view_.from);
     std::fputs(" sky y right -x*image_width/image_height up y look_at ", out);
     vector(out, view_.at);
@@ -125,8 +135,11 @@ class Pictures {
     for (const auto& c : palette) std::fprintf(out, "[%g srgb <%g,%g,%g>]", c[0], c[1], c[2], c[3]);
     std::fputs("}} finish{ambient 0.3 diffuse 0.65 specular 0.08 roughness 0.03}}\n", out);
     std::fprintf(out, "// colour: displacement magnitude, 0 to %g mm\n", most);
-    std::fputs("#declare Steel=texture{pigment{srgbt <0.35,0.45,0.55,0.45>} finish{ambient 0.25 diffuse 0.6 specular 0.3}}\n"
-               "#declare Force=texture{pigment{srgb <0.05,0.45,0.2>} finish{ambient 0.5 diffuse 0.5}}\n", out);
+    std::fputs(
+        "#declare Steel=texture{pigment{srgbt <0.35,0.45,0.55,0.45>} finish{ambient 0.25 diffuse 0.6 "
+        "specular 0.3}}\n"
+        "#declare Force=texture{pigment{srgb <0.05,0.45,0.2>} finish{ambient 0.5 diffuse 0.5}}\n",
+        out);
     std::fputs("#macro BodyFaces() ", out);
     faces(out, rest_.triangles);
     std::fputs("#end\n#declare Tool=union{mesh2{\n", out);
@@ -151,8 +164,8 @@ class Pictures {
     std::fputs("}\nBodyFaces()\ntexture{Body}}\nobject{Tool matrix", out);
     const palpate::Mat3<S>& R = frame.felt.pose.rotation;
     const V p = 1e3 * frame.felt.pose.translation;
-    std::fprintf(out, "<%.6f,%.6f,%.6f, %.6f,%.6f,%.6f, %.6f,%.6f,%.6f, %.4f,%.4f,%.4f>}\n", R(0, 0), R(1, 0), R(2, 0), R(0, 1),
-                 R(1, 1), R(2, 1), R(0, 2), R(1, 2), R(2, 2), p.x(), p.y(), p.z());
+    std::fprintf(out, "<%.6f,%.6f,%.6f, %.6f,%.6f,%.6f, %.6f,%.6f,%.6f, %.4f,%.4f,%.4f>}\n", R(0, 0), R(1, 0),
+                 R(2, 0), R(0, 1), R(1, 1), R(2, 1), R(0, 2), R(1, 2), R(2, 2), p.x(), p.y(), p.z());
     for (std::size_t j = 0; j < frame.felt.contacts.size(); ++j) {
       const palpate::ContactState<S>& contact = frame.felt.contacts[j];
       write_arrow(out, 1e3 * contact.centre, view_.per_newton * contact.force);

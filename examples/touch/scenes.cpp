@@ -57,31 +57,36 @@ int run_scene(Options options) {
   if (options.shape.empty()) options.shape = "skeleton";
   if (options.scene == "ellipsoid") {
     const Ellipsoid<S> body({.axes = V(0.06, 0.04, 0.04)});
-    return play(options, Scene<Ellipsoid<S>>{
-                             .title = "Fig. 10: a mallet moves along an ellipsoid",
-                             .body = body,
-                             .display = body.mesh(display_vertices),
-                             .tool = "mallet",
-                             .force = paper_force,
-                             .coupling = {},
-                             .view = {.from = V(70, 150, 300), .at = V(0, 26, 0), .angle = 32, .per_newton = 20},
-                             .script = [](const Options& o, const Ellipsoid<S>& b, const Tool& tool) {
-                               return make_script(o, b, tool.mesh);
-                             }});
+    return play(options,
+                Scene<Ellipsoid<S>>{
+                    .title = "Fig. 10: a mallet moves along an ellipsoid",
+                    .body = body,
+                    .display = body.mesh(display_vertices),
+                    .tool = "mallet",
+                    .force = paper_force,
+                    .coupling = {},
+                    .view = {.from = V(70, 150, 300), .at = V(0, 26, 0), .angle = 32, .per_newton = 20},
+                    .script = [](const Options& o, const Ellipsoid<S>& b, const Tool& tool) {
+                      return make_script(o, b, tool.mesh);
+                    }});
   }
-  if (options.scene == "cube-head") return play(options, cube("Fig. 11: a cube under the head of a mallet", "head"));
-  if (options.scene == "cube-tail") return play(options, cube("Fig. 11: a cube under the tail of a mallet", "tail"));
+  if (options.scene == "cube-head")
+    return play(options, cube("Fig. 11: a cube under the head of a mallet", "head"));
+  if (options.scene == "cube-tail")
+    return play(options, cube("Fig. 11: a cube under the tail of a mallet", "tail"));
   if (options.scene == "heart") {
     const Heart body({});
-    return play(options, Scene<Heart, Beams>{
-                             .title = "Fig. 12: a compass on a heart, with one pin, then both",
-                             .body = body,
-                             .display = body.mesh(display_vertices),
-                             .tool = "compass",
-                             .force = DuffingForce<S>({.c1 = 100, .c3 = 1e7}),  // softer than the paper's
-                             .coupling = make_beams(body),
-                             .view = {.from = V(60, 120, 250), .at = V(0, 14, 0), .angle = 33, .per_newton = 30},
-                             .script = [](const Options&, const Heart& heart, const Tool&) { return with_both_pins(heart); }});
+    return play(
+        options,
+        Scene<Heart, Beams>{
+            .title = "Fig. 12: a compass on a heart, with one pin, then both",
+            .body = body,
+            .display = body.mesh(display_vertices),
+            .tool = "compass",
+            .force = DuffingForce<S>({.c1 = 100, .c3 = 1e7}),  // softer than the paper's
+            .coupling = make_beams(body),
+            .view = {.from = V(60, 120, 250), .at = V(0, 14, 0), .angle = 33, .per_newton = 30},
+            .script = [](const Options&, const Heart& heart, const Tool&) { return with_both_pins(heart); }});
   }
   refuse("unknown scene " + options.scene + " (ellipsoid, cube-head, cube-tail, heart)");
 }

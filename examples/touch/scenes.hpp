@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Scenes: presets of object, tool, script, parameters and shape model, one for each of the paper's figures.
+/// @file Scenes: presets of object, tool, script, parameters and shape model, one for each of the paper's
+/// figures.
 
 #include "options.hpp"
 

@@ -27,16 +27,19 @@ inline double smooth_step(double t, double begin, double end) {
   return s * s * (3 - 2 * s);
 }
 
-/// The path, worked out before the servo loop runs: places every 10 ms, straight lines between. Where it rises or falls
-/// faster than a hand, 0.15 m/s, it is lifted before and after, as a hand lifts a tool over a step.
+/// The path, worked out before the servo loop runs: places every 10 ms, straight lines between. Where it
+/// rises or falls faster than a hand, 0.15 m/s, it is lifted before and after, as a hand lifts a tool over a
+/// step.
 template <class Path>
 Script table(double seconds, const Path& path) {
   constexpr double step = 0.01;
   std::vector<palpate::Vec3<double>> places;
   for (int i = 0; i <= static_cast<int>(seconds / step) + 1; ++i) places.push_back(path(i * step));
   constexpr double climb = 0.15 * step;  // [m]
-  for (std::size_t i = 1; i < places.size(); ++i) places[i].y() = (std::max)(places[i].y(), places[i - 1].y() - climb);
-  for (std::size_t i = places.size() - 1; i > 0; --i) places[i - 1].y() = (std::max)(places[i - 1].y(), places[i].y() - climb);
+  for (std::size_t i = 1; i < places.size(); ++i)
+    places[i].y() = (std::max)(places[i].y(), places[i - 1].y() - climb);
+  for (std::size_t i = places.size() - 1; i > 0; --i)
+    places[i - 1].y() = (std::max)(places[i - 1].y(), places[i].y() - climb);
   return {seconds,
           [places = std::move(places)](double t) -> palpate::Vec3<double> {
             const double s = std::clamp(t / step, 0.0, static_cast<double>(places.size() - 2));
@@ -47,8 +50,8 @@ Script table(double seconds, const Path& path) {
           {}};
 }
 
-/// Scripts lead the tool over the body's upper side, upright. `press` [m] is how far below the surface the hand aims: the
-/// grip's spring turns it into a force.
+/// Scripts lead the tool over the body's upper side, upright. `press` [m] is how far below the surface the
+/// hand aims: the grip's spring turns it into a force.
 template <class Body>
 Script make_script(const Options& options, const Body& body, const palpate::MeshData<double>& tool) {
   constexpr double hover = 6e-3, press = 8e-3, free = 1.2;  // s until the gate has armed and ramped
@@ -67,17 +70,18 @@ Script make_script(const Options& options, const Body& body, const palpate::Mesh
   const double reach = 0.6 * body.upper().x();
   if (options.script == "figure10") {  // down, along +x and slightly +z, up
     return table(6.0, [=](double t) {
-              const double down = smooth_step(t, free, free + 0.6) - smooth_step(t, 5.2, 5.8);
-              const double along = smooth_step(t, free + 0.6, 5.2);
-              return over(reach * (2 * along - 1), 0.1 * reach * along, hover - (hover + press) * down);
-            });
+      const double down = smooth_step(t, free, free + 0.6) - smooth_step(t, 5.2, 5.8);
+      const double along = smooth_step(t, free + 0.6, 5.2);
+      return over(reach * (2 * along - 1), 0.1 * reach * along, hover - (hover + press) * down);
+    });
   }
   if (options.script == "press") {  // in and out at one place, three times, each deeper
     return table(5.0, [=](double t) {
-              const double s = t < free ? 0 : t - free;
-              const double wave = 0.5 * (1 - std::cos(6.283185307179586 * s / 1.2));
-              return over(options.at_x, options.at_z, hover - (hover + press * (0.4 + 0.2 * std::floor(s / 1.2))) * wave);
-            });
+      const double s = t < free ? 0 : t - free;
+      const double wave = 0.5 * (1 - std::cos(6.283185307179586 * s / 1.2));
+      return over(options.at_x, options.at_z,
+                  hover - (hover + press * (0.4 + 0.2 * std::floor(s / 1.2))) * wave);
+    });
   }
   if (options.script == "both") {  // in and out once, tilted so that both pins of the compass touch at once
     if (options.tool != "compass") refuse("--script both needs --tool compass");
@@ -88,8 +92,10 @@ Script make_script(const Options& options, const Body& body, const palpate::Mesh
       begin = options.at_x - 0.5 * compass_width * std::cos(tilt);
       one = top(begin);
       const palpate::RayHit<double> two = top(begin + compass_width * std::cos(tilt));
-      if (!one.hit || !two.hit) refuse("--script both: a pin of the compass is beside the object; move it with --at");
-      tilt = 0.5 * (tilt + std::asin(std::clamp((two.position.y() - one.position.y()) / compass_width, -1.0, 1.0)));
+      if (!one.hit || !two.hit)
+        refuse("--script both: a pin of the compass is beside the object; move it with --at");
+      tilt = 0.5 *
+             (tilt + std::asin(std::clamp((two.position.y() - one.position.y()) / compass_width, -1.0, 1.0)));
     }
     Script script = table(4.4, [=](double t) -> V {
       const double down = smooth_step(t, free, free + 1.2) - smooth_step(t, 3.0, 4.2);
@@ -100,12 +106,12 @@ Script make_script(const Options& options, const Body& body, const palpate::Mesh
   }
   if (options.script == "slide") {  // to and fro across the top
     return table(8.0, [=](double t) {
-              const double down = smooth_step(t, free, free + 0.6) - smooth_step(t, 7.2, 7.8);
-              const double s = t < free + 0.6 ? 0 : t - free - 0.6;
-              return over(options.at_x + 0.5 * reach * std::sin(6.283185307179586 * s / 2.5),
-                          options.at_z + 0.2 * reach * std::sin(6.283185307179586 * s / 4.1),
-                          hover - (hover + press) * down);
-            });
+      const double down = smooth_step(t, free, free + 0.6) - smooth_step(t, 7.2, 7.8);
+      const double s = t < free + 0.6 ? 0 : t - free - 0.6;
+      return over(options.at_x + 0.5 * reach * std::sin(6.283185307179586 * s / 2.5),
+                  options.at_z + 0.2 * reach * std::sin(6.283185307179586 * s / 4.1),
+                  hover - (hover + press) * down);
+    });
   }
   refuse("unknown script " + options.script);
 }

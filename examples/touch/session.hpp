@@ -39,7 +39,10 @@ void write_csv(const std::string& file, const Device& device) {
     put(r.result.friction);
     put(r.output.force);
     csv << ',' << r.result.regions << ','
-        << (r.result.regions == 0 ? "free" : r.result.sliding ? "slip" : "stick") << '\n';
+        << (r.result.regions == 0 ? "free"
+            : r.result.sliding    ? "slip"
+                                  : "stick")
+        << '\n';
   }
   std::printf("wrote          %s\n", file.c_str());
 }
@@ -59,17 +62,22 @@ void print_summary(const Device& device) {
   }
   const auto us = [&](double q) { return 1e-3 * static_cast<double>(s.tick_time.quantile(q)); };
   const double share = contact > 0 ? 100.0 * static_cast<double>(sliding) / static_cast<double>(contact) : 0;
-  std::printf("rate reached   %.0f Hz over %.2f s, %llu ticks\n", s.rate(), 1e-9 * static_cast<double>(s.span),
-              static_cast<unsigned long long>(s.ticks));
+  std::printf("rate reached   %.0f Hz over %.2f s, %llu ticks\n", s.rate(),
+              1e-9 * static_cast<double>(s.span), static_cast<unsigned long long>(s.ticks));
   if (s.tick_time.max() == 0)
     std::printf("tick time      none in simulated time: leave out --stepped to measure it\n");
   else
-    std::printf("tick time      p50 %.2f us, p99 %.2f us, p99.9 %.2f us, max %.2f us (callback, with the device's calls)\n",
-              us(0.5), us(0.99), us(0.999), 1e-3 * static_cast<double>(s.tick_time.max()));
+    std::printf(
+        "tick time      p50 %.2f us, p99 %.2f us, p99.9 %.2f us, max %.2f us (callback, with the device's "
+        "calls)\n",
+        us(0.5), us(0.99), us(0.999), 1e-3 * static_cast<double>(s.tick_time.max()));
   std::printf("overruns       %llu\n", static_cast<unsigned long long>(s.overruns));
   if (gaps > 0) {
-    std::printf("gaps           %zu: the loop stood still for over %.0f ms and forces were switched off (use --stepped on a "
-                "busy machine)\n", gaps, 1e3 * device.gate_params().max_gap);
+    std::printf(
+        "gaps           %zu: the loop stood still for over %.0f ms and forces were switched off (use "
+        "--stepped on a "
+        "busy machine)\n",
+        gaps, 1e3 * device.gate_params().max_gap);
   }
   std::printf("peak force     %.2f N\n", peak);
   std::printf("in contact     %zu ticks: %.0f %% stick, %.0f %% slip\n", contact, 100 - share, share);
@@ -85,14 +93,16 @@ inline bool is_terminal() {
 #endif
 }
 
-/// Runs the script on the device. In this thread `update(record)` gets the newest tick `update_rate` times a second
-/// while the servo loop goes on, and `finish(device)` comes after the stop. `top`: the device's origin in the scene.
+/// Runs the script on the device. In this thread `update(record)` gets the newest tick `update_rate` times a
+/// second while the servo loop goes on, and `finish(device)` comes after the stop. `top`: the device's origin
+/// in the scene.
 template <class Feel, class Update, class Finish>
 int perform(const Options& options, Feel& feel, const Tool& tool, const Script& script, const V& top,
             const std::string& title, Update update, Finish finish) {
   using Device = palpate::example::HapticDevice<Feel
 #ifdef PALPATE_STANDIN
-                                                , standin::Clock
+                                                ,
+                                                standin::Clock
 #endif
                                                 >;
   typename Device::Params params;
@@ -144,13 +154,17 @@ int perform(const Options& options, Feel& feel, const Tool& tool, const Script& 
       seconds = now.t;
       update(now);
       if (terminal) {
-        std::printf("\r%5.2f s  F %6.2f N  regions %u  %-5s ", now.t, now.output.force.norm(), now.result.regions,
-                    now.result.regions == 0 ? "free" : now.result.sliding ? "slip" : "stick");
+        std::printf("\r%5.2f s  F %6.2f N  regions %u  %-5s ", now.t, now.output.force.norm(),
+                    now.result.regions,
+                    now.result.regions == 0 ? "free"
+                    : now.result.sliding    ? "slip"
+                                            : "stick");
         std::fflush(stdout);
       }
     }
     palpate::example::DeviceError error;
-    while (device.next_error(error)) std::fprintf(stderr, "\ndevice: %s at %.3f s\n", hdGetErrorString(error.info.errorCode), error.t);
+    while (device.next_error(error))
+      std::fprintf(stderr, "\ndevice: %s at %.3f s\n", hdGetErrorString(error.info.errorCode), error.t);
   }
   device.stop();
   if (terminal) std::printf("\n");

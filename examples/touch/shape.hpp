@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  The shape: contacts to the vertices of a display mesh by a deformation model, beside the servo loop for the
-/// pictures and within it for detection against the shape as it is now; and the frames that are kept of it.
+/// @file The shape: contacts to the vertices of a display mesh by a deformation model, beside the servo loop
+/// for the pictures and within it for detection against the shape as it is now; and the frames that are kept
+/// of it.
 
-#include <palpate/deformation/beam_skeleton.hpp>
-#include <palpate/deformation/half_space.hpp>
-#include <palpate/deformation/response_field.hpp>
-#include <palpate/detection/deformed_surface.hpp>
-#include <palpate/interpolation/phong.hpp>
-#include <palpate/surface/mesh_extremal_points.hpp>
+#include <palpate/elasticity/half_space.hpp>
+#include <palpate/geometry/deformed_surface.hpp>
+#include <palpate/geometry/mesh_extremal_points.hpp>
+#include <palpate/luo_xiao/beam_skeleton.hpp>
+#include <palpate/luo_xiao/interpolation/phong.hpp>
+#include <palpate/response/deformation.hpp>
 
 #include <chrono>
 #include <functional>
@@ -51,13 +52,15 @@ template <class Body>
   return body.raycast(V(middle.x(), body.lower().y() - 1, middle.z()), V::UnitY()).position;
 }
 
-/// A display mesh that a deformation model moves; the model's type is forgotten here. A copy is a shape of its own.
+/// A display mesh that a deformation model moves; the model's type is forgotten here. A copy is a shape of
+/// its own.
 class Shape {
  public:
   using Contacts = std::span<const palpate::ContactState<S>>;
 
   template <palpate::DeformationModel Model>
-  Shape(palpate::MeshData<S> mesh, Model model, std::optional<palpate::AreaNeighbourhood<S>> neighbourhood = {})
+  Shape(palpate::MeshData<S> mesh, Model model,
+        std::optional<palpate::AreaNeighbourhood<S>> neighbourhood = {})
       : mesh_(std::move(mesh)),
         position_(mesh_.vertices.size()),
         normal_(mesh_.vertices.size()),
@@ -84,9 +87,7 @@ class Shape {
   [[nodiscard]] std::span<const V> positions() const noexcept { return position_; }
   /// From now on only places are written, for those who do not draw it.
   void drop_normals() noexcept { with_normals_ = false; }
-  [[nodiscard]] Frame frame(double t, const Felt& felt) const {
-    return {t, felt, position_, normal_};
-  }
+  [[nodiscard]] Frame frame(double t, const Felt& felt) const { return {t, felt, position_, normal_}; }
 
   [[nodiscard]] const palpate::MeshData<S>& rest() const noexcept { return mesh_; }
   /// w, the local neighbourhood's factor of D; 1 where the model has none.
@@ -96,7 +97,9 @@ class Shape {
   }
   [[nodiscard]] std::size_t updates() const noexcept { return updates_; }
   /// Mean time of an update that moved something [s].
-  [[nodiscard]] double mean_time() const noexcept { return updates_ > 0 ? seconds_ / static_cast<double>(updates_) : 0; }
+  [[nodiscard]] double mean_time() const noexcept {
+    return updates_ > 0 ? seconds_ / static_cast<double>(updates_) : 0;
+  }
 
  private:
   using Buffer = palpate::VertexBuffer<S>;
@@ -136,10 +139,11 @@ struct FollowShape {
 template <class Body>
 [[nodiscard]] Shape skeleton_shape(const Body& body, palpate::MeshData<S> mesh) {
   using Interpolation = palpate::PhongInterpolation<S>;
-  const palpate::AreaNeighbourhood<S> neighbourhood({.reference_area = 1e-4});  // up to 1 cm^2 a contact counts as a point
-  palpate::BeamSkeletonDeformation<Beams, Interpolation> model(make_beams(body),
-                                                               Interpolation(palpate::make_partition(body, mesh)),
-                                                               neighbourhood, mesh, {.fixed = bottom(body)});
+  const palpate::AreaNeighbourhood<S> neighbourhood(
+      {.reference_area = 1e-4});  // up to 1 cm^2 a contact counts as a point
+  palpate::BeamSkeletonDeformation<Beams, Interpolation> model(
+      make_beams(body), Interpolation(palpate::make_partition(body, mesh)), neighbourhood, mesh,
+      {.fixed = bottom(body)});
   return Shape(std::move(mesh), std::move(model), neighbourhood);
 }
 
@@ -155,17 +159,20 @@ template <class Body>
 [[nodiscard]] Shape make_shape(const std::string& model, const Body& body, const palpate::MeshData<S>& mesh) {
   if (model == "skeleton") return skeleton_shape(body, mesh);
   if (model == "half-space")
-    return Shape(mesh, palpate::HalfSpaceDeformation<S>(mesh, bottom_region(body), {.nu = rubber.params().nu}));
+    return Shape(mesh,
+                 palpate::HalfSpaceDeformation<S>(mesh, bottom_region(body), {.nu = rubber.params().nu}));
   if (model == "response") {
     const auto begin = std::chrono::steady_clock::now();
     const auto field = std::make_shared<const palpate::ResponseField>(
         mesh, bottom_region(body),
-        palpate::ResponseField::Params{.E = rubber.params().E, .nu = rubber.params().nu, .threads = 2, .progress = [](double done) {
-                                         std::printf("\rresponse field %3.0f %%", 100 * done);
-                                         std::fflush(stdout);
-                                       }});
+        palpate::ResponseField::Params{
+            .E = rubber.params().E, .nu = rubber.params().nu, .threads = 2, .progress = [](double done) {
+              std::printf("\rresponse field %3.0f %%", 100 * done);
+              std::fflush(stdout);
+            }});
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
-    std::printf("\rresponse field of %zu solve vertices in %.1f s\n", field->mesh().vertices.size(), spent.count());
+    std::printf("\rresponse field of %zu solve vertices in %.1f s\n", field->mesh().vertices.size(),
+                spent.count());
     Shape shape(mesh, palpate::ResponseFieldDeformation<S, most_regions>(field, mesh));
     shape.field = field;
     return shape;

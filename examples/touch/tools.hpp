@@ -21,9 +21,9 @@ struct Rod {
 
 struct Tool {
   palpate::MeshData<S> mesh;
-  S contact_area;    ///< A_0 [m^2]
-  S spacing;         ///< of the points that feel [m]
-  V centre_of_mass;  ///< [m]
+  S contact_area;           ///< A_0 [m^2]
+  S spacing;                ///< of the points that feel [m]
+  V centre_of_mass;         ///< [m]
   std::vector<Rod> rods{};  ///< the part that never touches: only drawn
 };
 
@@ -59,7 +59,8 @@ inline Tool flat_face(S radius, S height, const V& centre_of_mass, std::vector<R
 inline Tool make_tool(const Options& options) {
   using namespace palpate;
   const std::string& name = options.tool;
-  if (name == "mallet") {  // a rounded head 24 mm wide and 16 mm high; the handle has weight but never touches
+  if (name ==
+      "mallet") {  // a rounded head 24 mm wide and 16 mm high; the handle has weight but never touches
     const Superellipsoid<S> head({.axes = V(12e-3, 8e-3, 12e-3)});
     return {standing(head.mesh(1000)), 1e-4, 1e-3, V(0, 30e-3, 0), {{V(0, 12e-3, 0), V(0, 70e-3, 0), 3e-3}}};
   }
@@ -67,8 +68,9 @@ inline Tool make_tool(const Options& options) {
     return flat_face(30e-3, 40e-3, V(0, 20e-3, 0), {{V(25e-3, 20e-3, 0), V(110e-3, 20e-3, 0), 7e-3}});
   }
   if (name == "tail") {  // the end of the same mallet's handle
-    return flat_face(10e-3, 20e-3, V(0, 70e-3, 0),
-                     {{V(0, 20e-3, 0), V(0, 80e-3, 0), 7e-3}, {V(-20e-3, 95e-3, 0), V(20e-3, 95e-3, 0), 30e-3}});
+    return flat_face(
+        10e-3, 20e-3, V(0, 70e-3, 0),
+        {{V(0, 20e-3, 0), V(0, 80e-3, 0), 7e-3}, {V(-20e-3, 95e-3, 0), V(20e-3, 95e-3, 0), 30e-3}});
   }
   if (name == "compass") {  // two pins 36 mm apart; the origin is the tip of the one at -x
     constexpr S radius = 2e-3;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Frames as files that ParaView opens: one PolyData (.vtp) per frame, and a collection (.pvd) that has their times.
+/// @file Frames as files that ParaView opens: one PolyData (.vtp) per frame, and a collection (.pvd) that has
+/// their times.
 
 #include <cstdio>
 #include <memory>
@@ -36,7 +37,8 @@ inline void write_vtp(const std::string& name, const palpate::MeshData<S>& rest,
   std::FILE* const out = file.get();
   const std::size_t n = rest.vertices.size(), m = rest.triangles.size();
   const auto vectors = [&](const char* what, const auto& vector) {
-    std::fprintf(out, "<DataArray type=\"Float32\" Name=\"%s\" NumberOfComponents=\"3\" format=\"ascii\">\n", what);
+    std::fprintf(out, "<DataArray type=\"Float32\" Name=\"%s\" NumberOfComponents=\"3\" format=\"ascii\">\n",
+                 what);
     for (std::size_t i = 0; i < n; ++i) {
       const V v = vector(i);
       std::fprintf(out, "%.6g %.6g %.6g\n", v.x(), v.y(), v.z());
@@ -45,7 +47,10 @@ inline void write_vtp(const std::string& name, const palpate::MeshData<S>& rest,
   };
   const auto displacement = [&](std::size_t i) -> V { return frame.position[i] - rest.vertices[i]; };
 
-  std::fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" byte_order=\"LittleEndian\">\n<PolyData>\n", out);
+  std::fputs(
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"PolyData\" version=\"0.1\" "
+      "byte_order=\"LittleEndian\">\n<PolyData>\n",
+      out);
   std::fprintf(out, "<Piece NumberOfPoints=\"%zu\" NumberOfPolys=\"%zu\">\n", n, m);
   std::fputs("<PointData Vectors=\"displacement_m\" Scalars=\"displacement_magnitude_m\">\n", out);
   vectors("displacement_m", displacement);
@@ -64,7 +69,8 @@ inline void write_vtp(const std::string& name, const palpate::MeshData<S>& rest,
 inline void write_series(const std::string& folder, const std::string& name, const palpate::MeshData<S>& rest,
                          const std::vector<Frame>& frames) {
   const File file = open_file(folder + "/" + name + ".pvd");
-  std::fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n", file.get());
+  std::fputs("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n",
+             file.get());
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::string part = numbered(name, i, ".vtp");
     std::fprintf(file.get(), "<DataSet timestep=\"%.4f\" file=\"%s\"/>\n", frames[i].t, part.c_str());

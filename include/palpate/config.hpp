@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Hooks for the host. An engine may put a header named `palpate_config.hpp` on its include path, or
+/// @file Hooks for the host. An engine may put a header named `palpate_config.hpp` on its include path, or
 /// define these macros on the command line, to replace the defaults below. The setting must be the same in
 /// every translation unit of a program.
 ///
@@ -9,7 +9,7 @@
 /// |----------------------------------|--------------------------------|-----------------------------------------|
 /// | PALPATE_ASSERT(condition)        | assert()                       | on broken preconditions, debug builds   |
 /// | PALPATE_ON_SETUP_ERROR(message)  | write to stderr, then abort()  | without exceptions: bad input at set-up; must not return |
-/// | PALPATE_NO_THREADS               | not defined                    | defined: set-up uses no threads (response/parallel.hpp) |
+/// | PALPATE_NO_THREADS               | not defined                    | defined: set-up uses no threads (response/setup/parallel.hpp) |
 
 #if __has_include(<palpate_config.hpp>)
 #include <palpate_config.hpp>
@@ -44,9 +44,9 @@
 #define PALPATE_INLINE_LAMBDA __attribute__((always_inline))
 #endif
 
-// Everything called in this function becomes part of it at any level of optimisation: for loops over vector registers,
-// whose every operation is a function of Eigen's.
-// Not without optimisation or under a sanitizer, where it only makes the compilation long.
+// Everything called in this function becomes part of it at any level of optimisation: for loops over vector
+// registers, whose every operation is a function of Eigen's. Not without optimisation or under a sanitizer,
+// where it only makes the compilation long.
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
 #define PALPATE_FLATTEN

@@ -4,7 +4,7 @@
 // expect-gcc: is not 'noexcept'
 // expect-clang: may throw an exception
 #include <palpate/detection/candidates_from.hpp>
-#include <palpate/surface/sphere.hpp>
+#include <palpate/geometry/sphere.hpp>
 
 #ifdef PALPATE_MUST_FAIL
 #define MAYBE_NOEXCEPT
@@ -19,5 +19,6 @@ struct Unknown {
 
 int main() {
   const palpate::Sphere<double> ball({.radius = 0.03});
-  return palpate::CandidatesFrom<palpate::Sphere<double>, Unknown>(ball, {}).separated(palpate::Vec3<double>::Zero(), 1);
+  return palpate::CandidatesFrom<palpate::Sphere<double>, Unknown>(ball, {}).separated(
+      palpate::Vec3<double>::Zero(), 1);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // expect: HasWrite<D>
 // expect-clang: model.write\(contacts
-#include <palpate/deformation/concept.hpp>
+#include <palpate/elasticity/concept.hpp>
 
 struct Jelly {
   using Scalar = double;

@@ -2,8 +2,8 @@
 // expect: ForceMap
 // expect-gcc: the required expression 'local.configurational_force\(depth\)' is invalid
 // expect-clang: no member named 'configurational_force' in 'Spring'
+#include <palpate/geometry/sphere.hpp>
 #include <palpate/solver/contact_solver.hpp>
-#include <palpate/surface/sphere.hpp>
 
 struct Spring {
   using Scalar = double;

@@ -3,7 +3,7 @@
 // expect: law.force\(depth\)
 // expect-gcc: is not 'noexcept'
 // expect-clang: may throw an exception
-#include <palpate/force/concept.hpp>
+#include <palpate/law/force/concept.hpp>
 
 #ifdef PALPATE_MUST_FAIL
 #define MAYBE_NOEXCEPT

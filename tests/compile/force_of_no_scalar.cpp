@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // expect: HasScalar
 // expect: Scalar
-#include <palpate/force/concept.hpp>
+#include <palpate/law/force/concept.hpp>
 
 #ifdef PALPATE_MUST_FAIL
 using Number = int;  // a scalar is a floating point type

@@ -3,7 +3,7 @@
 // expect: HasForce
 // expect: law.force\(depth\)
 // expect: same_as
-#include <palpate/force/concept.hpp>
+#include <palpate/law/force/concept.hpp>
 
 #ifdef PALPATE_MUST_FAIL
 using Result = double;

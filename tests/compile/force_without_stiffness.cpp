@@ -3,7 +3,7 @@
 // expect: law.stiffness\(depth\)
 // expect-gcc: the required expression 'law.stiffness\(depth\)' is invalid
 // expect-clang: no member named 'stiffness' in 'Spring'
-#include <palpate/force/concept.hpp>
+#include <palpate/law/force/concept.hpp>
 
 struct Spring {
   using Scalar = double;

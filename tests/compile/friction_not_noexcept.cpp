@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // expect: HasStaticLimit
 // expect-clang: may throw an exception
-#include <palpate/friction/concept.hpp>
+#include <palpate/law/friction/concept.hpp>
 
 #ifdef PALPATE_MUST_FAIL
 #define MAYBE_NOEXCEPT

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // expect: HasMaxCoefficient
 // expect-clang: same_as
-#include <palpate/friction/concept.hpp>
+#include <palpate/law/friction/concept.hpp>
 
 #ifdef PALPATE_MUST_FAIL
 using Result = double;

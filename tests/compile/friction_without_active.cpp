@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // expect: HasActive
 // expect: F::active
-#include <palpate/friction/concept.hpp>
+#include <palpate/law/friction/concept.hpp>
 
 struct Rough {
   using Scalar = double;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // expect: HasSlidingLimit
 // expect-clang: no member named 'sliding_limit' in 'Rough'
-#include <palpate/friction/concept.hpp>
+#include <palpate/law/friction/concept.hpp>
 
 struct Rough {
   using Scalar = double;

@@ -2,7 +2,7 @@
 // The field is drawn in the servo loop, where an exception has nowhere to go.
 // expect: HasAdd
 // expect: noexcept
-#include <palpate/interpolation/concept.hpp>
+#include <palpate/luo_xiao/interpolation/concept.hpp>
 
 #ifdef PALPATE_MUST_FAIL
 #define MAY_THROW

@@ -2,8 +2,8 @@
 // expect: HasDepth
 // expect-gcc: the required expression 'law.depth\(force\)' is invalid
 // expect-clang: no member named 'depth' in 'Spring'
+#include <palpate/geometry/sphere.hpp>
 #include <palpate/solver/contact_solver.hpp>
-#include <palpate/surface/sphere.hpp>
 
 struct Spring {
   using Scalar = double;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // expect: typename Friction::Scalar
 // expect: same_as
-#include <palpate/friction/coulomb.hpp>
-#include <palpate/force/linear.hpp>
+#include <palpate/geometry/sphere.hpp>
+#include <palpate/law/force/linear.hpp>
+#include <palpate/law/friction/coulomb.hpp>
 #include <palpate/solver/contact_solver.hpp>
-#include <palpate/surface/sphere.hpp>
 
 #ifdef PALPATE_MUST_FAIL
 using Friction = palpate::CoulombFriction<float>;

@@ -3,7 +3,7 @@
 // expect: body.penetration\(x\)
 // expect-gcc: is not 'noexcept'
 // expect-clang: may throw an exception
-#include <palpate/surface/concept.hpp>
+#include <palpate/geometry/concept.hpp>
 
 using palpate::Penetration, palpate::SurfacePoint, palpate::Vec3;
 

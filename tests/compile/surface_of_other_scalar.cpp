@@ -2,7 +2,7 @@
 // expect: HasReach
 // expect: body.reach\(\)
 // expect: same_as
-#include <palpate/surface/concept.hpp>
+#include <palpate/geometry/concept.hpp>
 
 using palpate::Penetration, palpate::SurfacePoint, palpate::Vec3;
 
@@ -18,7 +18,9 @@ struct Plane {
   SurfacePoint<double> closest(const Vec3<double>& x) const noexcept {
     return {Vec3<double>(x.x(), x.y(), 0), Vec3<double>::UnitZ(), x.z()};
   }
-  Penetration<double> penetration(const Vec3<double>& x) const noexcept { return {-x.z(), Vec3<double>::UnitZ()}; }
+  Penetration<double> penetration(const Vec3<double>& x) const noexcept {
+    return {-x.z(), Vec3<double>::UnitZ()};
+  }
   bool separated(const Vec3<double>& x, double r) const noexcept { return x.z() > r; }
   Result reach() const noexcept { return 1e30f; }
 };

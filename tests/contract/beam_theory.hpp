@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  What every beam theory must keep (beam/concept.hpp), run on an example of each.
+/// @file What every beam theory must keep (luo_xiao/beam/concept.hpp), run on an example of each.
 ///
 /// An example is a type with
 ///     template <class T> static Theory<T> make(T pressure);   // in units of `pressure` pascals
@@ -9,8 +9,8 @@
 
 #include "support/check.hpp"
 
-#include <palpate/beam/concept.hpp>
-#include <palpate/beam/section.hpp>
+#include <palpate/luo_xiao/beam/concept.hpp>
+#include <palpate/luo_xiao/beam/section.hpp>
 
 #include <doctest/doctest.h>
 

@@ -3,8 +3,8 @@
 
 #include "contract/beam_theory.hpp"
 
-#include <palpate/beam/euler_bernoulli.hpp>
-#include <palpate/beam/timoshenko.hpp>
+#include <palpate/luo_xiao/beam/euler_bernoulli.hpp>
+#include <palpate/luo_xiao/beam/timoshenko.hpp>
 
 using namespace palpate;
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  What every candidate tree must keep (detection/candidates_from.hpp): on random scenes no point that touches is
-/// missed, and a solver that takes its candidates from the tree gives what it gives with our own search.
+/// @file What every candidate tree must keep (detection/candidates_from.hpp): on random scenes no point that
+/// touches is missed, and a solver that takes its candidates from the tree gives what it gives with our own
+/// search.
 ///
 /// A host is a type with
 ///     explicit Host(const MeshData<S>& mesh);         // builds its tree
@@ -16,12 +17,12 @@
 
 #include <palpate/detection/candidates.hpp>
 #include <palpate/detection/candidates_from.hpp>
-#include <palpate/detection/deformed_surface.hpp>
-#include <palpate/force/linear.hpp>
-#include <palpate/friction/coulomb.hpp>
+#include <palpate/geometry/deformed_surface.hpp>
+#include <palpate/geometry/ellipsoid.hpp>
+#include <palpate/geometry/mesh_surface.hpp>
+#include <palpate/law/force/linear.hpp>
+#include <palpate/law/friction/coulomb.hpp>
 #include <palpate/solver/contact_solver.hpp>
-#include <palpate/surface/ellipsoid.hpp>
-#include <palpate/surface/mesh_surface.hpp>
 
 #include <cstddef>
 #include <random>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  What every force law must keep (force/concept.hpp), run on an example of each policy.
+/// @file What every force law must keep (law/force/concept.hpp), run on an example of each policy.
 ///
 /// An example is a type with
 ///     static constexpr double depth;                    // a depth [m] at which the law is well in its range
@@ -13,7 +13,7 @@
 
 #include "support/check.hpp"
 
-#include <palpate/force/concept.hpp>
+#include <palpate/law/force/concept.hpp>
 
 #include <cmath>
 #include <limits>
@@ -174,8 +174,8 @@ struct ForceLawSuite {
                    ulps<S>(32));  // difference of two numbers three times as large
   }
 
-  // The same law in other units gives the same physics: to the bit where the units are powers of 2, unless a product and a sum may
-  // be rounded together in one of two places and not in the other.
+  // The same law in other units gives the same physics: to the bit where the units are powers of 2, unless a
+  // product and a sum may be rounded together in one of two places and not in the other.
   void units() const {
     const S length = S(1) / S(1024), force = S(8);  // D [length] F [force]
     const Law other = Example::template make<S>(length, force);

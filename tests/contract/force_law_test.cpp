@@ -3,13 +3,13 @@
 
 #include "contract/force_law.hpp"
 
-#include <palpate/force/damped.hpp>
-#include <palpate/force/duffing.hpp>
-#include <palpate/force/hertz.hpp>
-#include <palpate/force/linear.hpp>
-#include <palpate/force/power_law.hpp>
-#include <palpate/force/saturated.hpp>
-#include <palpate/force/tabulated.hpp>
+#include <palpate/law/force/damped.hpp>
+#include <palpate/law/force/duffing.hpp>
+#include <palpate/law/force/hertz.hpp>
+#include <palpate/law/force/linear.hpp>
+#include <palpate/law/force/power_law.hpp>
+#include <palpate/law/force/saturated.hpp>
+#include <palpate/law/force/tabulated.hpp>
 
 #include <array>
 
@@ -64,8 +64,8 @@ struct PowerLawExample : DuffingExample<1> {
   }
 };
 
-// C in nanometres per newton: 0 a half-space, 2e5 with as much depth in the body as in the contact, 1e8 a spring; -2e4 a layer, -5e4 one
-// that is stiffer than the series has numbers for.
+// C in nanometres per newton: 0 a half-space, 2e5 with as much depth in the body as in the contact, 1e8 a
+// spring; -2e4 a layer, -5e4 one that is stiffer than the series has numbers for.
 template <int Compliance>
 struct HertzExample : DuffingExample<1> {
   static constexpr bool exact_units = false;  // cbrt() promises nothing about powers of 2

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  What every friction law must keep (friction/concept.hpp), run on an example of each policy.
+/// @file  What every friction law must keep (law/friction/concept.hpp), run on an example of each policy.
 
 #include "support/check.hpp"
 
-#include <palpate/friction/concept.hpp>
+#include <palpate/law/friction/concept.hpp>
 
 #include <cmath>
 #include <limits>

@@ -3,9 +3,9 @@
 
 #include "contract/friction_law.hpp"
 
-#include <palpate/friction/coulomb.hpp>
-#include <palpate/friction/none.hpp>
-#include <palpate/friction/power_law.hpp>
+#include <palpate/law/friction/coulomb.hpp>
+#include <palpate/law/friction/none.hpp>
+#include <palpate/law/friction/power_law.hpp>
 
 #include <type_traits>
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  What every interpolation must keep (interpolation/concept.hpp), run on each policy over several bodies.
+/// @file What every interpolation must keep (luo_xiao/interpolation/concept.hpp), run on each policy over
+/// several bodies.
 
 #include "support/check.hpp"
 #include "support/paths.hpp"
 
-#include <palpate/interpolation/concept.hpp>
+#include <palpate/luo_xiao/interpolation/concept.hpp>
 
 #include <algorithm>
 #include <random>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "contract/interpolation.hpp"
 
-#include <palpate/interpolation/linear.hpp>
-#include <palpate/interpolation/phong.hpp>
-#include <palpate/interpolation/smooth.hpp>
+#include <palpate/luo_xiao/interpolation/linear.hpp>
+#include <palpate/luo_xiao/interpolation/phong.hpp>
+#include <palpate/luo_xiao/interpolation/smooth.hpp>
 
 #include <doctest/doctest.h>
 
@@ -37,7 +37,8 @@ TEST_CASE_TEMPLATE("interpolation contract: linear", S, float, double) {
 TEST_CASE_TEMPLATE("interpolation contract: Phong", S, float, double) {
   check_on_all_bodies<PhongInterpolation, S>(ulps<S>(100));
 }
-// Coefficients of the spline cancel: they are up to 20 times the displacements, and there are up to 18 of them.
+// Coefficients of the spline cancel: they are up to 20 times the displacements, and there are up to 18 of
+// them.
 TEST_CASE_TEMPLATE("interpolation contract: smooth", S, float, double) {
   check_on_all_bodies<SmoothInterpolation, S>(ulps<S>(2000));
 }

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  What every exact surface must keep (surface/concept.hpp), run on examples of each.
+/// @file  What every exact surface must keep (geometry/concept.hpp), run on examples of each.
 
 #include "support/check.hpp"
 
 #include <palpate/core/error.hpp>
-#include <palpate/surface/concept.hpp>
+#include <palpate/geometry/concept.hpp>
 
 #include <algorithm>
 #include <random>
@@ -20,8 +20,8 @@ constexpr std::uint64_t surface_seed = 20250711;
 using Long3 = Vec3<long double>;
 
 /// The suite. `make(scale)` builds the body with every length times `scale`, centre included; `gauge(x)` is
-/// independent of the code under test: 1 on the surface, below 1 inside, growing in proportion along rays from
-/// the centre, which is at `centre`. `area_ratio` is the stated evenness of the mesh.
+/// independent of the code under test: 1 on the surface, below 1 inside, growing in proportion along rays
+/// from the centre, which is at `centre`. `area_ratio` is the stated evenness of the mesh.
 template <Real S, class Make, class Gauge>
 class SurfaceSuite {
  public:
@@ -94,7 +94,8 @@ class SurfaceSuite {
       // A few roundings in the coordinates, which the gauge sees over the smallest half size.
       CHECK_ABSOLUTE(gauge(p.position), 1.0L, 16 * rounding_ / static_cast<long double>(half_.minCoeff()));
       CHECK_ABSOLUTE(wide(p.normal).norm(), 1.0L, ulps<S>(8));
-      // x = p + distance * normal: |x - p| and its direction at once. Roundings of x, p and a few in the solver.
+      // x = p + distance * normal: |x - p| and its direction at once. Roundings of x, p and a few in the
+      // solver.
       const long double scale = rounding_ + ulps<S>(1) * (wide(x) - wide(centre_)).norm();
       const Long3 gap = wide(x) - wide(p.position);
       CHECK_ABSOLUTE(gap.norm(), std::fabs(static_cast<long double>(p.distance)), 32 * scale);
@@ -128,7 +129,8 @@ class SurfaceSuite {
       CHECK(p.gradient.norm() <= S(1) + S(8) * std::numeric_limits<S>::epsilon());
       if constexpr (std::is_same_v<S, double>) {
         if (p.depth < 0.02 * body_.reach() || p.depth > 0.5 * body_.reach()) continue;
-        // Central differences: the gradient changes by at most about 10 / depth per metre, hence the error by step.
+        // Central differences: the gradient changes by at most about 10 / depth per metre, hence the error by
+        // step.
         const double step = 1e-6 * body_.reach();
         for (int k = 0; k < 3; ++k) {
           const Vec3<S> h = step * Vec3<S>::Unit(k);
@@ -140,8 +142,9 @@ class SurfaceSuite {
     }
   }
 
-  // Depth is Lipschitz with 1, its gradient with a few / depth: on short chords anywhere, edges and corners included.
-  // Many at once as one by one: in one face's or several faces' depth, at the centre, outside, far away, and not finite.
+  // Depth is Lipschitz with 1, its gradient with a few / depth: on short chords anywhere, edges and corners
+  // included. Many at once as one by one: in one face's or several faces' depth, at the centre, outside, far
+  // away, and not finite.
   template <std::size_t N>
   void penetration_lanes() {
     for (int k = 0; k < 300; ++k) {
@@ -162,8 +165,10 @@ class SurfaceSuite {
         CHECK_ABSOLUTE(in.depth[i], one.depth, few);
         if (!(one.depth > few)) continue;  // outside, or on the surface to rounding
         const Vec3<S> gradient(in.gradient_x[i], in.gradient_y[i], in.gradient_z[i]);
-        // Over an edge directions turn by as much as the place moves over the depth, times a number of order 1.
-        CHECK((gradient - one.gradient).norm() <= S(4) * few / (std::min)(one.depth, body_.reach()) + test::ulps<S>(16));
+        // Over an edge directions turn by as much as the place moves over the depth, times a number of order
+        // 1.
+        CHECK((gradient - one.gradient).norm() <=
+              S(4) * few / (std::min)(one.depth, body_.reach()) + test::ulps<S>(16));
       }
     }
   }
@@ -181,8 +186,8 @@ class SurfaceSuite {
       const long double turn = (wide(pa.gradient) - wide(pb.gradient)).norm();
       worst_depth = std::max(worst_depth, std::fabs(static_cast<long double>(pa.depth - pb.depth)) -
                                               16 * rounding_ - chord * (1 + ulps<S>(4)));
-      // A smooth surface turns by 1 / (reach - depth), the blend by about 4 / depth; the normal's own rounding
-      // is that of x over the radius of curvature.
+      // A smooth surface turns by 1 / (reach - depth), the blend by about 4 / depth; the normal's own
+      // rounding is that of x over the radius of curvature.
       const long double bound = 6 * chord * (1 / depth + 1 / (reach - std::max(pa.depth, pb.depth)));
       worst_gradient =
           std::max(worst_gradient, turn / (bound + 64 * rounding_ / (reach * 0.1L) + ulps<S>(64)));
@@ -272,8 +277,8 @@ class SurfaceSuite {
       }
       CHECK_ABSOLUTE(c.dir1.dot(c.dir2), S(0), ulps<S>(16));
       if constexpr (std::is_same_v<S, double>) {
-        // dn = k dir ds. Central differences of the normal over a small part of the reach; their error is of second
-        // order in it (first where the curvature itself has a kink), the noise is rounding / step.
+        // dn = k dir ds. Central differences of the normal over a small part of the reach; their error is of
+        // second order in it (first where the curvature itself has a kink), the noise is rounding / step.
         const double step = 1e-4 * body_.reach();
         for (int k = 0; k < 2; ++k) {
           const Vec3<S> d = k == 0 ? c.dir1 : c.dir2;

@@ -3,11 +3,11 @@
 
 #include "contract/surface.hpp"
 
-#include <palpate/surface/box.hpp>
-#include <palpate/surface/cylinder.hpp>
-#include <palpate/surface/ellipsoid.hpp>
-#include <palpate/surface/sphere.hpp>
-#include <palpate/surface/superellipsoid.hpp>
+#include <palpate/geometry/box.hpp>
+#include <palpate/geometry/cylinder.hpp>
+#include <palpate/geometry/ellipsoid.hpp>
+#include <palpate/geometry/sphere.hpp>
+#include <palpate/geometry/superellipsoid.hpp>
 
 using namespace palpate;
 using test::Long3;

@@ -29,7 +29,8 @@ TEST_CASE("heart: closest point against all points of a fine mesh") {
   int inside = 0;
   for (int i = 0; i < 300; ++i) {
     const V x = 0.5 * (heart.lower() + heart.upper()) +
-                0.5 * (heart.upper() - heart.lower()).cwiseProduct(V(uniform(random), uniform(random), uniform(random)));
+                0.5 * (heart.upper() - heart.lower())
+                          .cwiseProduct(V(uniform(random), uniform(random), uniform(random)));
     const auto p = heart.closest(x);
     if (p.distance < -heart.reach()) continue;  // the answer may be a local minimum there
     inside += p.distance < 0;
@@ -40,7 +41,8 @@ TEST_CASE("heart: closest point against all points of a fine mesh") {
     // A vertex is within an edge of every point of the surface.
     CHECK(std::abs(p.distance) >= nearest - longest);
     // A step is taken only where the distance falls, and rounding hides that below the root of epsilon.
-    CHECK((x - p.position - p.distance * p.normal).norm() <= std::sqrt(2.2e-16) * (x.norm() + heart.params().size));
+    CHECK((x - p.position - p.distance * p.normal).norm() <=
+          std::sqrt(2.2e-16) * (x.norm() + heart.params().size));
     CHECK((heart.on_ray(p.position) - p.position).norm() <= 1e-12 * heart.params().size);
     const auto in = heart.penetration(x);
     CHECK((in.depth > 0) == (p.distance < 0));
@@ -62,7 +64,8 @@ TEST_CASE("heart: separated() never claims too much, and rays end on the surface
       CHECK(heart.closest(c).distance > r);
     }
     const V from = 0.2 * V(uniform(random), uniform(random), uniform(random)).normalized();
-    const auto hit = heart.raycast(from, V(0.02 * V(uniform(random), uniform(random), uniform(random)) - from));
+    const auto hit =
+        heart.raycast(from, V(0.02 * V(uniform(random), uniform(random), uniform(random)) - from));
     if (!hit.hit) continue;
     ++hits;
     // The last bisection's interval.

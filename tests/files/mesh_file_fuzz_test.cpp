@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Mutated mesh files through the example's reader: it never crashes, hangs or fills the memory, and what it
-/// passes is a sound mesh by an independent check. The reader's parser is Assimp's, which is not ours: cases run in child
-/// processes, so that one that kills its process is counted, its file kept in the working folder, and the rest goes on.
-/// 10,000 cases; PALPATE_FUZZ_CASES=1000000 in a build with sanitizers.
+/// @file Mutated mesh files through the example's reader: it never crashes, hangs or fills the memory, and
+/// what it passes is a sound mesh by an independent check. The reader's parser is Assimp's, which is not
+/// ours: cases run in child processes, so that one that kills its process is counted, its file kept in the
+/// working folder, and the rest goes on. 10,000 cases; PALPATE_FUZZ_CASES=1000000 in a build with sanitizers.
 
 #include "touch/mesh_file.hpp"
 
-#include <palpate/surface/mesh_surface.hpp>
+#include <palpate/geometry/mesh_surface.hpp>
 
 #include <support/meshes.hpp>
 

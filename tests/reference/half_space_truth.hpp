@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  What geometrically nonlinear finite elements (neo-Hookean, nu = 0.49) have beyond linear ones around a stuck disc of radius a on
-/// a block of 60 x 30 x 60 a, held at its base: `bench/truth/make_reference.cpp`, half_space and half_space_askew, elements of a/16 and
-/// a/12 at the disc's edge. Means over rings of the top around the disc; in parts of the way d that the disc is pressed.
+/// @file What geometrically nonlinear finite elements (neo-Hookean, nu = 0.49) have beyond linear ones around
+/// a stuck disc of radius a on a block of 60 x 30 x 60 a, held at its base: `bench/truth/make_reference.cpp`,
+/// half_space and half_space_askew, elements of a/16 and a/12 at the disc's edge. Means over rings of the top
+/// around the disc; in parts of the way d that the disc is pressed.
 
 namespace palpate::test {
 
-/// s: distance over a. pressed: along the radius (outward) and the normal (into the body), d = 0.4, 0.8, 1.2 a. askew: 35 degrees off the
-/// normal, d = 0.4 and 1 a; along the radius, its part that goes with the cosine of the angle from the lean.
+/// s: distance over a. pressed: along the radius (outward) and the normal (into the body), d = 0.4, 0.8, 1.2
+/// a. askew: 35 degrees off the normal, d = 0.4 and 1 a; along the radius, its part that goes with the cosine
+/// of the angle from the lean.
 inline constexpr struct {
   double s, pressed[3][2], askew[2];
 } half_space_truth[] = {

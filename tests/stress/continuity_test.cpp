@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Force is continuous along any continuous tool path: on random smooth paths over every surface, in which
-/// points join and leave and the contact sticks, slides and sticks again,
+/// @file Force is continuous along any continuous tool path: on random smooth paths over every surface, in
+/// which points join and leave and the contact sticks, slides and sticks again,
 ///
 ///     |dF| <= C K |dx|
 ///
-/// with |dx| the largest displacement of any tool point in the tick and K the largest tangent stiffness: of the touching
-/// points, sum of share times F'(depth), plus the tangential spring's F'(|D_t|). C is
-/// stated per surface below, from: 2 for the normal force (the law's stiffness and, at half the reach, as much again
-/// from the turning normal; 6 over a blended edge), times 1 + mu for friction's share, plus 1 for the tangential
-/// spring itself. What the literal policies do is printed beside it.
+/// with |dx| the largest displacement of any tool point in the tick and K the largest tangent stiffness: of
+/// the touching points, sum of share times F'(depth), plus the tangential spring's F'(|D_t|). C is stated per
+/// surface below, from: 2 for the normal force (the law's stiffness and, at half the reach, as much again
+/// from the turning normal; 6 over a blended edge), times 1 + mu for friction's share, plus 1 for the
+/// tangential spring itself. What the literal policies do is printed beside it.
 
 #include <palpate/palpate.hpp>
 
@@ -55,8 +55,8 @@ S stiffness(const Outline& tool, const Pose<S>& X, const Body& body, const Force
 }
 
 template <class Solver, class Body>
-Worst wander(typename Solver::Parts parts, const Body& body, const Outline& tool, S radius, S deepest, int paths,
-             std::uint64_t seed) {
+Worst wander(typename Solver::Parts parts, const Body& body, const Outline& tool, S radius, S deepest,
+             int paths, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   Solver solver(std::move(parts));
   Worst worst;
@@ -125,10 +125,11 @@ void check_surface(const char* name, const Body& body, S deepest, S normal_facto
       {body, tool, law, fibre<Default>(), {6e-4}}, body, outline, radius, deepest, region_paths, seed);
   const Worst literal = wander<ContactSolver<Body, DuffingForce<S>, Literal, Regions<4, EqualSharing>>>(
       {body, tool, law, fibre<Literal>(), {6e-4}}, body, outline, radius, deepest, region_paths / 5, seed);
-  std::printf("%-15s C %5.2f  largest |dF|/(K|dx|): point %6.3f  region %6.3f  regions %6.3f  literal %8.1f   "
-              "contact %2.0f %%, sliding %2.0f %%, %g changes of the touching set\n",
-              name, C, point.ratio, region.ratio, regions.ratio, literal.ratio, 100 * region.in_contact,
-              100 * region.sliding, regions.changes);
+  std::printf(
+      "%-15s C %5.2f  largest |dF|/(K|dx|): point %6.3f  region %6.3f  regions %6.3f  literal %8.1f   "
+      "contact %2.0f %%, sliding %2.0f %%, %g changes of the touching set\n",
+      name, C, point.ratio, region.ratio, regions.ratio, literal.ratio, 100 * region.in_contact,
+      100 * region.sliding, regions.changes);
   CHECK(point.ratio <= C);
   CHECK(region.ratio <= C);
   CHECK(regions.ratio <= C);

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Energy of detection against a shape that the contact deforms itself, a tick old: a ball on random closed
-/// paths over an ellipsoid, from free air to free air, at 1 kHz. Work is taken by the trapezoidal rule, which a
-/// conservative force closes to rounding of the path; so what is left over is made by the bulges. Two shapes: half-spaces, and a
-/// ring that rises around the contact by `gain` times the depth, far more than an elastic body's. With EnergyLimit none of
-/// it reaches the hand.
+/// @file Energy of detection against a shape that the contact deforms itself, a tick old: a ball on random
+/// closed paths over an ellipsoid, from free air to free air, at 1 kHz. Work is taken by the trapezoidal
+/// rule, which a conservative force closes to rounding of the path; so what is left over is made by the
+/// bulges. Two shapes: half-spaces, and a ring that rises around the contact by `gain` times the depth, far
+/// more than an elastic body's. With EnergyLimit none of it reaches the hand.
 
-#include <palpate/deformation/half_space.hpp>
-#include <palpate/detection/deformed_surface.hpp>
 #include <palpate/device/energy_limit.hpp>
-#include <palpate/force/linear.hpp>
-#include <palpate/friction/coulomb.hpp>
+#include <palpate/elasticity/half_space.hpp>
+#include <palpate/geometry/deformed_surface.hpp>
+#include <palpate/geometry/ellipsoid.hpp>
+#include <palpate/geometry/sphere.hpp>
+#include <palpate/geometry/triangle_mesh.hpp>
+#include <palpate/law/force/linear.hpp>
+#include <palpate/law/friction/coulomb.hpp>
 #include <palpate/solver/contact_solver.hpp>
-#include <palpate/surface/ellipsoid.hpp>
-#include <palpate/surface/sphere.hpp>
-#include <palpate/surface/triangle_mesh.hpp>
 
 #include <doctest/doctest.h>
 
@@ -54,7 +54,8 @@ struct Ring {
   }
 };
 
-/// The ball's centre: over a random closed curve on the upper side, down to 1 to 3 mm below the surface and up.
+/// The ball's centre: over a random closed curve on the upper side, down to 1 to 3 mm below the surface and
+/// up.
 std::vector<V> closed_path(std::mt19937_64& random, int ticks) {
   std::uniform_real_distribution<S> unit(-1, 1);
   std::array<S, 12> a;
@@ -152,8 +153,8 @@ Figures measure(const char* name, const Friction& friction, Model model, int tic
   return f;
 }
 
-// A step of the trapezoidal rule is wrong by h^3 F'' / 12: with steps of 1e-4 m over forces that bend within 1e-3 m some 1e-3 of a
-// step's work, of either sign in turn.
+// A step of the trapezoidal rule is wrong by h^3 F'' / 12: with steps of 1e-4 m over forces that bend within
+// 1e-3 m some 1e-3 of a step's work, of either sign in turn.
 constexpr double rounding = 1e-4;
 
 }  // namespace

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Attacks on the force path that once worked: friction that pays the user at each merger of regions, rate terms
-/// that jump with the clustering or beyond a law's maximum, and a radial skew that forgets part of the normal force.
+/// @file Attacks on the force path that once worked: friction that pays the user at each merger of regions,
+/// rate terms that jump with the clustering or beyond a law's maximum, and a radial skew that forgets part of
+/// the normal force.
 
-#include <palpate/force/damped.hpp>
-#include <palpate/force/linear.hpp>
-#include <palpate/force/saturated.hpp>
-#include <palpate/friction/coulomb.hpp>
+#include <palpate/geometry/box.hpp>
+#include <palpate/law/force/damped.hpp>
+#include <palpate/law/force/linear.hpp>
+#include <palpate/law/force/saturated.hpp>
+#include <palpate/law/friction/coulomb.hpp>
 #include <palpate/solver/contact_solver.hpp>
-#include <palpate/surface/box.hpp>
 
 #include <doctest/doctest.h>
 
@@ -77,20 +78,24 @@ TEST_CASE("friction pays nothing for merging regions: forward as two regions, ba
     go(start - 2.7e-5, one, 100);
   }
   CHECK(changes > 10);
-  CHECK(jump <= 1e-15);  // the regions change while x rests and the contact sticks: nothing but rounding of 0.1 N
+  CHECK(jump <=
+        1e-15);  // the regions change while x rests and the contact sticks: nothing but rounding of 0.1 N
   CHECK(most <= 1e-18);  // rounding of the 2e-6 J that go in and out
 }
 
 TEST_CASE("a rate term does not see regions merge: at constant speed the force follows the depth") {
   using Damped = DampedForce<LinearForce<double>>;
   ContactSolver<Box<double>, Damped, Frictionless<double>, Regions<4>> solver(
-      {.object = block, .tool = two_feet(), .force = Damped(spring, {.damping = 10}), .contacts = {.distance = 6e-4}});
+      {.object = block,
+       .tool = two_feet(),
+       .force = Damped(spring, {.damping = 10}),
+       .contacts = {.distance = 6e-4}});
   ContactSolver<Box<double>, LinearForce<double>, Frictionless<double>, Regions<4>> still(
       {.object = block, .tool = two_feet(), .force = spring, .contacts = {.distance = 6e-4}});
   for (int i = 0; i < 300; ++i) {  // 1 mm/s inwards, at 1 kHz
     const Pose<double> X = at(0, 1e-6 * (i + 0.5));
     const double F = solver.tick(X, 1e-3).wrench.force.y(), F0 = still.tick(X).wrench.force.y();
-    if (i == 0) continue;  // without a pose before there is no rate
+    if (i == 0) continue;                                 // without a pose before there is no rate
     CHECK_RELATIVE(F, F0 * (1 + 1.5 * 10 * 1e-3), 1e-9);  // the rate is a difference of places: 1e-17 / 1e-6
   }
 }

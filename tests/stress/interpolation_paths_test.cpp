@@ -1,11 +1,10 @@
-// SPDX-License-Identifier: MIT
-// Continuity in time: while a contact wanders over faces, edges and corners, no vertex moves further in one tick than
-// a stated factor times the contact's step.
+// SPDX-License-Identifier: MIT Continuity in time: while a contact wanders over faces, edges and corners, no
+// vertex moves further in one tick than a stated factor times the contact's step.
 #include "contract/interpolation.hpp"
 
-#include <palpate/interpolation/linear.hpp>
-#include <palpate/interpolation/phong.hpp>
-#include <palpate/interpolation/smooth.hpp>
+#include <palpate/luo_xiao/interpolation/linear.hpp>
+#include <palpate/luo_xiao/interpolation/phong.hpp>
+#include <palpate/luo_xiao/interpolation/smooth.hpp>
 
 #include <doctest/doctest.h>
 
@@ -15,8 +14,8 @@ namespace {
 
 using S = double;
 
-/// Largest |change of u| / largest displacement, per step / body size, over 10,000 paths of short straight steps; half
-/// of the paths start on an edge or a corner of the partition.
+/// Largest |change of u| / largest displacement, per step / body size, over 10,000 paths of short straight
+/// steps; half of the paths start on an edge or a corner of the partition.
 template <Interpolation I, class Body>
 double steepest(const I& interpolation, const Body& body) {
   std::mt19937_64 random(10000);
@@ -74,8 +73,8 @@ const Box<S> box({.half = {0.02, 0.02, 0.02}});
 
 }  // namespace
 
-// d mu / d P <= 1/fade = 10, and weights turn over 2 to 4 times faster than the place in units of the body; corners
-// and contact may each be as large as the unit of displacement.
+// d mu / d P <= 1/fade = 10, and weights turn over 2 to 4 times faster than the place in units of the body;
+// corners and contact may each be as large as the unit of displacement.
 TEST_CASE("linear field under 10,000 wandering contacts: ellipsoid") {
   check_paths<LinearInterpolation<S>>(ellipsoid, 40);
 }

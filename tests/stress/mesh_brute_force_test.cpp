@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  A mesh as the elastic object against brute force, in double: 100,000 random queries on five meshes for
-/// distance, closest point, inside, and depth.
+/// @file A mesh as the elastic object against brute force, in double: 100,000 random queries on five meshes
+/// for distance, closest point, inside, and depth.
 
-#include <palpate/surface/mesh_surface.hpp>
+#include <palpate/geometry/mesh_surface.hpp>
 
 #include <support/check.hpp>
 #include <support/meshes.hpp>

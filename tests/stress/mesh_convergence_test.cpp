@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  An ellipsoid as a mesh of 1,000 to 100,000 vertices against the exact one: the force of a tool pressed into it
-/// converges, and so do the extremal points and the skeleton's shape; and how much the force clicks over a coarse mesh's edges with flat, interpolated and blended normals.
+/// @file An ellipsoid as a mesh of 1,000 to 100,000 vertices against the exact one: the force of a tool
+/// pressed into it converges, and so do the extremal points and the skeleton's shape; and how much the force
+/// clicks over a coarse mesh's edges with flat, interpolated and blended normals.
 
+#include <palpate/geometry/mesh_extremal_points.hpp>
+#include <palpate/geometry/mesh_surface.hpp>
+#include <palpate/geometry/sampled_surface.hpp>
 #include <palpate/palpate.hpp>
-#include <palpate/surface/mesh_extremal_points.hpp>
-#include <palpate/surface/mesh_surface.hpp>
-#include <palpate/surface/sampled_surface.hpp>
 
 #include <support/check.hpp>
 
@@ -50,7 +51,8 @@ std::vector<V> ends_of(const auto& body) {
   return ends;
 }
 
-// Displacement of the mesh's vertices by one contact, worked out with the extremal points and faces of `body`.
+// Displacement of the mesh's vertices by one contact, worked out with the extremal points and faces of
+// `body`.
 template <class Body>
 std::vector<V> drawn(const Body& body, const MeshData<double>& mesh) {
   using Beams = RegionSkeletons<Skeleton<double>>;
@@ -114,8 +116,8 @@ TEST_CASE("stress: the force on an ellipsoid's mesh converges to the exact one w
     last = off, last_edge = edge;
     before = off, edge_before = edge;
   }
-  // Depth lies chords below the surface, edge^2 / (8 R): order 2. Which points touch changes with the depth, so one step
-  // scatters; over the whole range, 100 times the vertices, the order is to within a tenth.
+  // Depth lies chords below the surface, edge^2 / (8 R): order 2. Which points touch changes with the depth,
+  // so one step scatters; over the whole range, 100 times the vertices, the order is to within a tenth.
   CHECK_RELATIVE(std::log(first / last) / std::log(first_edge / last_edge), 2, 0.1);
   // At the last size chords are up to 0.517^2 / (8 * 15) mm = 2e-6 m high, on depths of 1 to 4 mm.
   CHECK(last < 2e-3);
@@ -140,8 +142,8 @@ TEST_CASE(
     std::printf("%6zu: %.2f %.4f\n", mesh.vertices.size(), 1e3 * far, last);
     if (first == 0) first_far = far, first = last;
   }
-  // Edges shrink by ten. A point is found to a part of an edge, which part depends on how the vertices lie: half of order 1
-  // is asked for.
+  // Edges shrink by ten. A point is found to a part of an edge, which part depends on how the vertices lie:
+  // half of order 1 is asked for.
   CHECK(far < first_far / 3);
   CHECK(last < first / 3);
 }
@@ -180,8 +182,8 @@ TEST_CASE("stress: clicks of a point's force over the edges of coarse meshes") {
       }
       std::printf("%5zu, %.1f: %8.1f %8.1f %6.2f %6.2f\n", body.bvh().vertices().size(), 1e3 * depth,
                   worst[0], worst[1], worst[2], worst[3]);
-      // On the exact body the force changes by 1 (with depth) and by depth times curvature (turning), at most 1 + 5 / 7.5
-      // here; faces of a coarse mesh lean by as much again.
+      // On the exact body the force changes by 1 (with depth) and by depth times curvature (turning), at most
+      // 1 + 5 / 7.5 here; faces of a coarse mesh lean by as much again.
       CHECK(worst[2] < 4);
       CHECK(worst[3] < 4);
     }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  Random and mutated vertex buffers through inspect(): it never crashes, and what it passes is a closed,
-/// oriented mesh with volume, by an independent check. 200,000 cases, up to a million within 15 s; PALPATE_FUZZ_CASES sets
-/// the number, without a limit of time: PALPATE_FUZZ_CASES=1000000 in a build with sanitizers.
+/// @file Random and mutated vertex buffers through inspect(): it never crashes, and what it passes is a
+/// closed, oriented mesh with volume, by an independent check. 200,000 cases, up to a million within 15 s;
+/// PALPATE_FUZZ_CASES sets the number, without a limit of time: PALPATE_FUZZ_CASES=1000000 in a build with
+/// sanitizers.
 
-#include <palpate/surface/mesh_surface.hpp>
+#include <palpate/geometry/mesh_surface.hpp>
 
 #include <support/check.hpp>
 #include <support/meshes.hpp>

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 
-/// @file  A small tool thrown at a thin plate, several of its sizes in a tick: with SweptPose none gets through.
+/// @file A small tool thrown at a thin plate, several of its sizes in a tick: with SweptPose none gets
+/// through.
 
 #include <palpate/detection/swept_pose.hpp>
+#include <palpate/geometry/mesh_surface.hpp>
 #include <palpate/palpate.hpp>
-#include <palpate/surface/mesh_surface.hpp>
 
 #include <support/check.hpp>
 

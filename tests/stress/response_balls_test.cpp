@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 
-// A ball that rolls over bodies that no closed form knows: finite, bounded, without jumps. PALPATE_PATHS: paths over each body.
+// A ball that rolls over bodies that no closed form knows: finite, bounded, without jumps. PALPATE_PATHS:
+// paths over each body.
 
 #include <palpate/response/response_contact.hpp>
 
@@ -86,8 +87,8 @@ void roll_over(const test::ResponseBody& body) {
   }
   MESSAGE(std::string(body.name), ": force per half-space's ", stiffest, ", largest jump of force ",
           force_jump, ", of field ", field_jump, ", largest |u| / d ", most);
-  // What a body takes from d_H is held at half of it, and a tenth of d is gained at most: (2 x 1.1)^1.5 = 3.26; finite strain, at
-  // nu = 0.3, and the force across add up to a quarter.
+  // What a body takes from d_H is held at half of it, and a tenth of d is gained at most: (2 x 1.1)^1.5 =
+  // 3.26; finite strain, at nu = 0.3, and the force across add up to a quarter.
   CHECK(stiffest < 4.1);
   // As for patches (response_bodies_test.cpp).
   CHECK(force_jump < 0.02);

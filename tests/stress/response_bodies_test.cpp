@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 
-// Bodies that no closed form knows: concave, thin, in two pieces, with edges. No reference: what is checked is that the
-// answer is finite and bounded by theory, that it does not jump while the contact wanders (a third of them with the tool
-// turned), and that twice the solve vertices change it by little. PALPATE_PATHS: paths over each body; docs/accuracy.md has the figures of 10,000.
+// Bodies that no closed form knows: concave, thin, in two pieces, with edges. No reference: what is checked
+// is that the answer is finite and bounded by theory, that it does not jump while the contact wanders (a
+// third of them with the tool turned), and that twice the solve vertices change it by little. PALPATE_PATHS:
+// paths over each body; docs/accuracy.md has the figures of 10,000.
 
 #include <palpate/response/response_contact.hpp>
 
@@ -160,11 +161,11 @@ void try_body(const test::ResponseBody& body, double convergence) {
   MESSAGE(std::string(body.name), ": force per half-space's ", stiffest, ", largest jump of force ",
           force_jump, ", of field ", field_jump, ", largest |u| / d ", most, ", of first order ", most_linear,
           ", change with twice the vertices: median ", median, ", 95 % ", worst, " of ", change.size());
-  // contact_system.hpp: the compliance is at least 0.1 of the half-space's smaller one, and the loads beside the force, the
-  // tool's own among them, count as at most half of d.
+  // contact_system.hpp: the compliance is at least 0.1 of the half-space's smaller one, and the loads beside
+  // the force, the tool's own among them, count as at most half of d.
   CHECK(stiffest <= 1.5 / 0.1);
-  // A jump keeps its size when a step is cut in 16,384; those that were found here had at least 0.02, the fastest smooth change
-  // has up to 0.011 (10,000 paths; lying plate).
+  // A jump keeps its size when a step is cut in 16,384; those that were found here had at least 0.02, the
+  // fastest smooth change has up to 0.011 (10,000 paths; lying plate).
   CHECK(force_jump < 0.02);
   CHECK(field_jump < 0.02);
   CHECK(median < convergence);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <palpate/calibrate/response_map.hpp>
+#include <palpate/geometry/ellipsoid.hpp>
 #include <palpate/response/response_contact.hpp>
 #include <palpate/solver/contact_solver.hpp>
-#include <palpate/surface/ellipsoid.hpp>
 
 #include "reference/response_truth.hpp"
 #include "support/check.hpp"
@@ -13,7 +13,8 @@ using namespace palpate;
 using V = Vec3<double>;
 
 template <std::size_t N>
-void check_reference(const ResponseField& field, const ResponseContact<double>& contact, const test::TruthVertex (&truth)[N], double force, double bound) {
+void check_reference(const ResponseField& field, const ResponseContact<double>& contact,
+                     const test::TruthVertex (&truth)[N], double force, double bound) {
   ResponseTick<1> tick(field);
   std::vector<V> points;
   for (const auto& t : truth) points.push_back(V(t.x[0], t.x[1], t.x[2]));
@@ -35,16 +36,21 @@ void check_reference(const ResponseField& field, const ResponseContact<double>& 
 
 TEST_CASE("nonlinear finite elements: ellipsoid t1 and cube t6 at 4 mm") {
   // A small solve mesh keeps the test short: the bound is wider than the 4 % of the full one.
-  check_reference(test::ellipsoid_field(0.49, 260), {.place = V(0, 0.04, 0), .normal = V::UnitY(), .radius = 0.005, .displacement = V(0, -0.004, 0)},
-                  test::truth_t1, test::truth_t1_force, 0.05);
-  check_reference(test::block_field(V(0.1, 0.1, 0.1), 1e6, 0.49, 260), {.place = V(0, 0.1, 0), .normal = V::UnitY(), .radius = 0.01, .displacement = V(0, -0.004, 0)},
-                  test::truth_t6, test::truth_t6_force, 0.06);
+  check_reference(
+      test::ellipsoid_field(0.49, 260),
+      {.place = V(0, 0.04, 0), .normal = V::UnitY(), .radius = 0.005, .displacement = V(0, -0.004, 0)},
+      test::truth_t1, test::truth_t1_force, 0.05);
+  check_reference(
+      test::block_field(V(0.1, 0.1, 0.1), 1e6, 0.49, 260),
+      {.place = V(0, 0.1, 0), .normal = V::UnitY(), .radius = 0.01, .displacement = V(0, -0.004, 0)},
+      test::truth_t6, test::truth_t6_force, 0.06);
 }
 
 TEST_CASE("nonlinear finite elements: a ball on the ellipsoid, t8, felt through the contact solver") {
   const Ellipsoid<double> body({.axes = V(0.06, 0.04, 0.04)});
   const ResponseField field = test::ellipsoid_field(0.49, 260);
-  const auto fitted = ball_response_map(field, body, {.radius = 0.015, .depth = 0.012, .spacing = field.mesh().length / 2});
+  const auto fitted =
+      ball_response_map(field, body, {.radius = 0.015, .depth = 0.012, .spacing = field.mesh().length / 2});
   ContactSolver<Ellipsoid<double>, HertzMap<double>> solver({body, {}, fitted.map, {}, {}});
   double squares = 0;
   for (const auto& [depth, force] : test::truth_t8_force) {
@@ -60,7 +66,10 @@ TEST_CASE("nonlinear finite elements: a ball on a slab, which is stiffer than a 
   ResponseTick<1> tick(field);
   double squares = 0;
   for (const auto& [depth, force] : test::truth_slab_ball_force) {
-    const double felt = tick.solve(SphereContact<double>{.place = V(0, 0.03, 0), .normal = V::UnitY(), .radius = 0.015, .depth = depth}).force;
+    const double felt =
+        tick.solve(SphereContact<double>{
+                       .place = V(0, 0.03, 0), .normal = V::UnitY(), .radius = 0.015, .depth = depth})
+            .force;
     squares += std::pow(felt / force - 1, 2) / double(std::size(test::truth_slab_ball_force));
   }
   MESSAGE("relative force error, rms ", std::sqrt(squares));
@@ -72,8 +81,13 @@ TEST_CASE("nonlinear finite elements: a ball near an edge, which leans away and 
   ResponseTick<1> tick(field);
   double squares = 0;
   for (const auto& [depth, across, along] : test::truth_edge_ball_force) {
-    const V force(across, along, 0), felt = tick.solve(SphereContact<double>{.place = V(0.028, 0.05, 0), .normal = V::UnitY(), .radius = 0.01, .depth = depth}).on_body(V::UnitY());
-    squares += (felt - force).squaredNorm() / force.squaredNorm() / double(std::size(test::truth_edge_ball_force));
+    const V force(across, along, 0),
+        felt =
+            tick.solve(SphereContact<double>{
+                           .place = V(0.028, 0.05, 0), .normal = V::UnitY(), .radius = 0.01, .depth = depth})
+                .on_body(V::UnitY());
+    squares +=
+        (felt - force).squaredNorm() / force.squaredNorm() / double(std::size(test::truth_edge_ball_force));
   }
   MESSAGE("relative force error, rms ", std::sqrt(squares));
   CHECK(std::sqrt(squares) < 0.02);  // the goal; the force across is up to 5 % of the whole

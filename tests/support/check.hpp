@@ -29,22 +29,22 @@ template <Real S>
 }  // namespace palpate::test
 
 /// Relative error of `value` against `reference` is at most `tolerance`. NaN fails.
-#define CHECK_RELATIVE(value, reference, tolerance)                                                   \
-  do {                                                                                                \
-    const auto palpate_value = (value);                                                               \
-    const auto palpate_reference = (reference);                                                       \
+#define CHECK_RELATIVE(value, reference, tolerance)                                                      \
+  do {                                                                                                   \
+    const auto palpate_value = (value);                                                                  \
+    const auto palpate_reference = (reference);                                                          \
     const long double palpate_error = ::palpate::test::relative_error(palpate_value, palpate_reference); \
-    INFO(#value " = ", palpate_value, ", reference ", palpate_reference, ", relative error ",         \
-         static_cast<double>(palpate_error));                                                         \
-    CHECK(palpate_error <= static_cast<long double>(tolerance));                                      \
+    INFO(#value " = ", palpate_value, ", reference ", palpate_reference, ", relative error ",            \
+         static_cast<double>(palpate_error));                                                            \
+    CHECK(palpate_error <= static_cast<long double>(tolerance));                                         \
   } while (false)
 
 /// |value - reference| <= tolerance, in the unit of the value. NaN fails.
-#define CHECK_ABSOLUTE(value, reference, tolerance)                                                   \
-  do {                                                                                                \
-    const auto palpate_value = (value);                                                               \
-    const auto palpate_reference = (reference);                                                       \
-    INFO(#value " = ", palpate_value, ", reference ", palpate_reference);                             \
-    CHECK(std::fabs(static_cast<long double>(palpate_value) - static_cast<long double>(palpate_reference)) <= \
-          static_cast<long double>(tolerance));                                                       \
+#define CHECK_ABSOLUTE(value, reference, tolerance)                                                       \
+  do {                                                                                                    \
+    const auto palpate_value = (value);                                                                   \
+    const auto palpate_reference = (reference);                                                           \
+    INFO(#value " = ", palpate_value, ", reference ", palpate_reference);                                 \
+    CHECK(std::fabs(static_cast<long double>(palpate_value) -                                             \
+                    static_cast<long double>(palpate_reference)) <= static_cast<long double>(tolerance)); \
   } while (false)

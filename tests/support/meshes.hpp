@@ -3,9 +3,9 @@
 
 /// @file  Closed meshes for tests, and a slow, independent answer to what is closest and what is inside.
 
-#include <palpate/surface/box.hpp>
-#include <palpate/surface/ellipsoid.hpp>
-#include <palpate/surface/sphere.hpp>
+#include <palpate/geometry/box.hpp>
+#include <palpate/geometry/ellipsoid.hpp>
+#include <palpate/geometry/sphere.hpp>
 
 #include <algorithm>
 #include <array>
@@ -60,8 +60,9 @@ template <Real S>
           {"blob", blob<S>(vertices)}};
 }
 
-/// Is it a closed, oriented mesh with volume? Independent of inspect(): every directed edge once, its reverse once, every
-/// vertex used and finite, every triangle with an area, and the right sign of the volume, all in long double.
+/// Is it a closed, oriented mesh with volume? Independent of inspect(): every directed edge once, its reverse
+/// once, every vertex used and finite, every triangle with an area, and the right sign of the volume, all in
+/// long double.
 template <Real S>
 [[nodiscard]] inline bool is_sound(const MeshData<S>& mesh) {
   using V = Vec3<long double>;

@@ -46,7 +46,8 @@ void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return op
 void* operator new(std::size_t size, std::align_val_t align) {
   ++count;
   const auto alignment = static_cast<std::size_t>(align);
-  if (void* block = PALPATE_TEST_ALIGNED_ALLOC(alignment, (size + alignment - 1) / alignment * alignment)) return block;
+  if (void* block = PALPATE_TEST_ALIGNED_ALLOC(alignment, (size + alignment - 1) / alignment * alignment))
+    return block;
   std::abort();
 }
 void operator delete(void* block) noexcept { std::free(block); }

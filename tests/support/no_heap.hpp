@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Counts heap allocations of the calling thread, so that a test can show that a tick makes none:
+/// @file Counts heap allocations of the calling thread, so that a test can show that a tick makes none:
 ///
 ///     const palpate::test::HeapCount heap;
 ///     solver.tick(pose, dt);
 ///     CHECK(heap.allocations() == 0);
 ///
-/// Counted: operator new in all its forms, and on Linux malloc, calloc, realloc, aligned_alloc and posix_memalign
-/// called from the program's own objects, which a header-only library is a part of.
+/// Counted: operator new in all its forms, and on Linux malloc, calloc, realloc, aligned_alloc and
+/// posix_memalign called from the program's own objects, which a header-only library is a part of.
 
 #include <cstddef>
 

@@ -4,7 +4,7 @@
 /// @file  Random smooth tool paths over a body, for continuity and stress tests.
 
 #include <palpate/core/pose.hpp>
-#include <palpate/surface/concept.hpp>
+#include <palpate/geometry/concept.hpp>
 
 #include <array>
 #include <cmath>
@@ -20,8 +20,8 @@ template <Real S>
   return Mat3<S>::Identity() + std::sin(angle) * K + (S(1) - std::cos(angle)) * K * K;
 }
 
-/// A path that wanders over a body in smooth loops, dips in and out of it, and turns the tool.
-/// The tool's origin follows the surface point seen from the body's middle in a direction that traces a Lissajous
+/// A path that wanders over a body in smooth loops, dips in and out of it, and turns the tool. The tool's
+/// origin follows the surface point seen from the body's middle in a direction that traces a Lissajous
 /// figure, at a height above it that oscillates between `lowest` and `highest` [m].
 template <class Body>
 class WanderingPath {
@@ -50,7 +50,9 @@ class WanderingPath {
 
   /// The tool's pose at t in [0, 1].
   [[nodiscard]] Pose<S> at(double t) const {
-    const auto wave = [&](int k, int n) { return S(std::sin(two_pi * n * t + phase_[static_cast<std::size_t>(k)])); };
+    const auto wave = [&](int k, int n) {
+      return S(std::sin(two_pi * n * t + phase_[static_cast<std::size_t>(k)]));
+    };
     const Vec3<S> look = (towards_ + sweep_ * (wave(0, 1) * side_ + wave(1, 2) * other_)).normalized();
     const RayHit<S> hit = body_.raycast(middle_, look);
     const S height = low_ + (high_ - low_) * (S(1) + wave(2, dips_)) / S(2);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Bodies that no closed form knows, for the response field: concave, thin, in two pieces, with edges. About 100 mm.
+/// @file Bodies that no closed form knows, for the response field: concave, thin, in two pieces, with edges.
+/// About 100 mm.
 
 #include "support/response_meshes.hpp"
 

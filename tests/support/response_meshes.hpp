@@ -3,7 +3,7 @@
 
 /// @file  Closed triangle meshes for the response field's tests.
 
-#include <palpate/surface/concept.hpp>
+#include <palpate/geometry/concept.hpp>
 
 #include <cmath>
 #include <map>
@@ -35,8 +35,10 @@ inline MeshData<double> box_mesh(const Vec3<double>& size, int n) {
             corner[k] = vertex(c);
           }
           const bool out = side == 1;
-          mesh.triangles.push_back(out ? std::array{corner[0], corner[1], corner[2]} : std::array{corner[0], corner[2], corner[1]});
-          mesh.triangles.push_back(out ? std::array{corner[0], corner[2], corner[3]} : std::array{corner[0], corner[3], corner[2]});
+          mesh.triangles.push_back(out ? std::array{corner[0], corner[1], corner[2]}
+                                       : std::array{corner[0], corner[2], corner[1]});
+          mesh.triangles.push_back(out ? std::array{corner[0], corner[2], corner[3]}
+                                       : std::array{corner[0], corner[3], corner[2]});
         }
       }
     }

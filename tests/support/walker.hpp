@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  What looks for jumps: a contact that wanders over a body, and a closer look at a step in which much changed.
+/// @file What looks for jumps: a contact that wanders over a body, and a closer look at a step in which much
+/// changed.
 
-#include <palpate/surface/bvh.hpp>
+#include <palpate/geometry/bvh.hpp>
 
 #include <random>
 
 namespace palpate::test {
 
-/// A probe that is kept at a small distance outside; its nearest point of the surface and the direction from there are
-/// continuous over convex edges.
+/// A probe that is kept at a small distance outside; its nearest point of the surface and the direction from
+/// there are continuous over convex edges.
 class Walker {
  public:
   Walker(const TriangleBvh<double>& tree, const MeshData<double>& mesh, double distance, unsigned seed)

@@ -14,22 +14,25 @@
 
 namespace palpate {
 
-/// A host's btBvhTriangleMeshShape of the object as a CandidateTree, quantized or not. The shape is in object coordinates
-/// [m], its local scaling included.
+/// A host's btBvhTriangleMeshShape of the object as a CandidateTree, quantized or not. The shape is in object
+/// coordinates [m], its local scaling included.
 ///
-/// Real time: one btBvhTriangleMeshShape::processAllTriangles() for each question. Bullet 3.24 takes no heap, lock,
-/// exception or I/O there, and visits every box at most once; but it cannot be stopped, so a large ball near the surface
-/// costs every triangle in its box: a search takes about ten times palpate's own on a mesh (docs/meshes.md). Older
-/// versions of Bullet keep a statistic in a global variable there: not from two threads at once.
+/// Real time: one btBvhTriangleMeshShape::processAllTriangles() for each question. Bullet 3.24 takes no heap,
+/// lock, exception or I/O there, and visits every box at most once; but it cannot be stopped, so a large ball
+/// near the surface costs every triangle in its box: a search takes about ten times palpate's own on a mesh
+/// (docs/meshes.md). Older versions of Bullet keep a statistic in a global variable there: not from two
+/// threads at once.
 ///
-/// Deformed meshes: write the vertices of the btStridingMeshInterface, then refitTree(), between ticks; it takes no heap.
-/// Only quantized trees are refitted: on others refitTree() of Bullet 3.24 does nothing, rebuild them. Give the box that
-/// the deformation stays in. After partialRefitTree() the boxes above the part are old: right only with
-/// setTraversalMode(btQuantizedBvh::TRAVERSAL_STACKLESS_CACHE_FRIENDLY), which is not the default.
+/// Deformed meshes: write the vertices of the btStridingMeshInterface, then refitTree(), between ticks; it
+/// takes no heap. Only quantized trees are refitted: on others refitTree() of Bullet 3.24 does nothing,
+/// rebuild them. Give the box that the deformation stays in. After partialRefitTree() the boxes above the
+/// part are old: right only with setTraversalMode(btQuantizedBvh::TRAVERSAL_STACKLESS_CACHE_FRIENDLY), which
+/// is not the default.
 ///
-/// Precision: Bullet's btScalar is float unless BT_USE_DOUBLE_PRECISION is defined, for Bullet and the host alike, and so
-/// are its vertices; questions are widened by 16 ulp of btScalar at the largest coordinate, so that the rounding of
-/// the vertices loses no contact. The collision margin of the shape is not added to anything.
+/// Precision: Bullet's btScalar is float unless BT_USE_DOUBLE_PRECISION is defined, for Bullet and the host
+/// alike, and so are its vertices; questions are widened by 16 ulp of btScalar at the largest coordinate, so
+/// that the rounding of the vertices loses no contact. The collision margin of the shape is not added to
+/// anything.
 class BulletTree {
  public:
   /// Keeps a reference. @throws SetupError where the shape has no tree.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Candidates from FCL, the Flexible Collision Library: the tree that a host has over the object's mesh.
-/// Optional: not in palpate.hpp, and the host finds and links FCL itself. Tested with FCL 0.7.
+/// @file Candidates from FCL, the Flexible Collision Library: the tree that a host has over the object's
+/// mesh. Optional: not in palpate.hpp, and the host finds and links FCL itself. Tested with FCL 0.7.
 
 #include <palpate/core/error.hpp>
 #include <palpate/detection/candidates_from.hpp>
@@ -51,22 +51,23 @@ template <Real S>
 }
 }  // namespace detail
 
-/// A host's fcl::BVHModel<BV> of the object as a CandidateTree. BV is fcl::AABB or fcl::OBBRSS of float or double, vertices
-/// in object coordinates [m], in the mesh's place as it is now.
+/// A host's fcl::BVHModel<BV> of the object as a CandidateTree. BV is fcl::AABB or fcl::OBBRSS of float or
+/// double, vertices in object coordinates [m], in the mesh's place as it is now.
 ///
-/// Real time: FCL's tree is walked here, from its boxes and triangles; no heap, lock, exception or I/O, and at most one
-/// visit to every box. fcl::collide() with a ball for each question would give the same answers, but takes the heap
-/// wherever it finds a contact, and a search tens of times as long (docs/meshes.md). Building and refitting are FCL's own:
-/// they write to std::cerr when called out of order, and the first beginUpdateModel() takes the heap.
+/// Real time: FCL's tree is walked here, from its boxes and triangles; no heap, lock, exception or I/O, and
+/// at most one visit to every box. fcl::collide() with a ball for each question would give the same answers,
+/// but takes the heap wherever it finds a contact, and a search tens of times as long (docs/meshes.md).
+/// Building and refitting are FCL's own: they write to std::cerr when called out of order, and the first
+/// beginUpdateModel() takes the heap.
 ///
-/// Deformed meshes: beginReplaceModel(), replaceSubModel(), endReplaceModel(true, bottomup), between ticks. With OBBRSS
-/// give `false` for bottomup: its default, the bottom-up merge of FCL 0.7, makes boxes that do not hold all below them (by
-/// 1.4 mm on a mesh of 6 cm), and 0.05 to 0.3 % of the surface is lost, in fcl::collide() as here. With AABB either is
-/// right. beginUpdateModel() keeps the last frame in the boxes as well: right, and slower to search. makeParentRelative()
-/// must not have been called.
+/// Deformed meshes: beginReplaceModel(), replaceSubModel(), endReplaceModel(true, bottomup), between ticks.
+/// With OBBRSS give `false` for bottomup: its default, the bottom-up merge of FCL 0.7, makes boxes that do
+/// not hold all below them (by 1.4 mm on a mesh of 6 cm), and 0.05 to 0.3 % of the surface is lost, in
+/// fcl::collide() as here. With AABB either is right. beginUpdateModel() keeps the last frame in the boxes as
+/// well: right, and slower to search. makeParentRelative() must not have been called.
 ///
-/// Precision: questions are answered in BV's scalar, widened by 16 ulp of the largest coordinate. FCL's types hold Eigen's
-/// by value: compile with the vector flags that your FCL was compiled with.
+/// Precision: questions are answered in BV's scalar, widened by 16 ulp of the largest coordinate. FCL's types
+/// hold Eigen's by value: compile with the vector flags that your FCL was compiled with.
 template <class BV>
 class FclTree {
  public:

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Parameters of a law with few of them from a measured or computed curve: bounded least squares. Set-up only.
+/// @file Parameters of a law with few of them from a measured or computed curve: bounded least squares.
+/// Set-up only.
 ///
-/// Minimises sum w_i (f(p, x_i) - y_i)^2 over low <= p <= high by Levenberg and Marquardt's steps on the parameters that are
-/// not held at a bound. Derivatives by central differences. Source: [more1978].
+/// Minimises sum w_i (f(p, x_i) - y_i)^2 over low <= p <= high by Levenberg and Marquardt's steps on the
+/// parameters that are not held at a bound. Derivatives by central differences. Source: [more1978].
 
 #include <palpate/core/error.hpp>
 
@@ -25,8 +26,9 @@ struct CurvePoint {
   double depth = 0, force = 0, weight = 1;
 };
 
-/// A fitted curve. Confidence: the true value lies within value +- half_width with 95 % probability if the law is right
-/// and the errors are independent and normal; for curves that were computed it says how well the law fits instead.
+/// A fitted curve. Confidence: the true value lies within value +- half_width with 95 % probability if the
+/// law is right and the errors are independent and normal; for curves that were computed it says how well the
+/// law fits instead.
 template <std::size_t N>
 struct CurveFit {
   std::array<double, N> value{};       ///< parameters
@@ -42,9 +44,9 @@ struct CurveFitParams {
   int most_steps = 200;
 };
 
-/// Fits law(p, depth) -> force. Reports: fewer than N + 2 points, numbers that are not finite, weights < 0, bounds the wrong
-/// way round, no force anywhere, parameters that the points do not determine, a fit that does not settle or is worse
-/// than `worst_rms`.
+/// Fits law(p, depth) -> force. Reports: fewer than N + 2 points, numbers that are not finite, weights < 0,
+/// bounds the wrong way round, no force anywhere, parameters that the points do not determine, a fit that
+/// does not settle or is worse than `worst_rms`.
 template <std::size_t N, class Law>
 [[nodiscard]] CurveFit<N> fit_curve(std::span<const CurvePoint> points, const Law& law,
                                     const std::array<double, N>& start, const std::array<double, N>& low,

@@ -4,7 +4,7 @@
 /// @file  Duffing's c1 and c3 from a curve, softening allowed where the curve softens.
 
 #include <palpate/calibrate/curve_fit.hpp>
-#include <palpate/force/duffing.hpp>
+#include <palpate/law/force/duffing.hpp>
 
 namespace palpate {
 
@@ -19,7 +19,8 @@ struct DuffingFit {
 ///
 ///     F = y_0 (s - s^3/3) + y_1 s^3/3,   s = D / D_m,   y_0 = c1 D_m >= 0,   y_1 = (c1 + 3 c3 D_m^2) D_m >= 0
 ///
-/// so the fold of a softening law is never within the curve. Reports what fit_curve reports, and points without depth > 0.
+/// so the fold of a softening law is never within the curve. Reports what fit_curve reports, and points
+/// without depth > 0.
 [[nodiscard]] inline DuffingFit fit_duffing(std::span<const CurvePoint> points,
                                             const CurveFitParams& params = {}) {
   double deepest = 0, strongest = 0;

@@ -4,7 +4,7 @@
 /// @file  k and C of Hertz's law in series with the body, from a curve.
 
 #include <palpate/calibrate/curve_fit.hpp>
-#include <palpate/force/hertz.hpp>
+#include <palpate/law/force/hertz.hpp>
 
 namespace palpate {
 
@@ -13,8 +13,9 @@ struct HertzFit {
   CurveFit<2> fit;                    ///< value: depths of contact and body at the largest force [m]
 };
 
-/// D = h (F/F_m)^(2/3) + b F/F_m over 0 < F <= F_m, the largest force among the points, with the contact's depth h > 0 and the
-/// body's b, < 0 for a layer on something stiff; residuals are of the force. Reports what fit_curve reports, and points without depth > 0.
+/// D = h (F/F_m)^(2/3) + b F/F_m over 0 < F <= F_m, the largest force among the points, with the contact's
+/// depth h > 0 and the body's b, < 0 for a layer on something stiff; residuals are of the force. Reports what
+/// fit_curve reports, and points without depth > 0.
 [[nodiscard]] inline HertzFit fit_hertz(std::span<const CurvePoint> points,
                                         const CurveFitParams& params = {}) {
   double deepest = 0, strongest = 0;

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  The force-depth curve that a response field has at a place, for a direction and a patch size: what a force law
-/// of the solver is fitted to.
+/// @file The force-depth curve that a response field has at a place, for a direction and a patch size: what a
+/// force law of the solver is fitted to.
 
 #include <palpate/calibrate/curve_fit.hpp>
 #include <palpate/response/response_contact.hpp>
 
 namespace palpate {
 
-/// `count` points up to |contact.displacement|, in its direction; force: along that direction, so that it is the curve of a
-/// law F(D) with D the displacement's length. Reports a contact that is not usable, one without displacement, count < 2.
+/// `count` points up to |contact.displacement|, in its direction; force: along that direction, so that it is
+/// the curve of a law F(D) with D the displacement's length. Reports a contact that is not usable, one
+/// without displacement, count < 2.
 template <Real S>
 [[nodiscard]] std::vector<CurvePoint> response_curve(const ResponseField& field,
                                                      const ResponseContact<S>& contact,
@@ -33,8 +34,8 @@ template <Real S>
   return curve;
 }
 
-/// The same for a frictionless ball, `contact.depth` > 0 at most. Its force starts with a power of the depth, so weights are such
-/// that relative errors count.
+/// The same for a frictionless ball, `contact.depth` > 0 at most. Its force starts with a power of the depth,
+/// so weights are such that relative errors count.
 template <Real S>
 [[nodiscard]] std::vector<CurvePoint> response_curve(const ResponseField& field,
                                                      const SphereContact<S>& contact,

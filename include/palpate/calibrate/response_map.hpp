@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  A response field's force as the force law of the contact solver: a law's coefficients over the whole object, fitted to
-/// what the field answers. Set-up only.
+/// @file A response field's force as the force law of the contact solver: a law's coefficients over the whole
+/// object, fitted to what the field answers. Set-up only.
 
 #include <palpate/calibrate/duffing_fit.hpp>
 #include <palpate/calibrate/hertz_fit.hpp>
 #include <palpate/calibrate/response_curve.hpp>
-#include <palpate/solver/duffing_map.hpp>
-#include <palpate/solver/hertz_map.hpp>
-#include <palpate/surface/sampled_surface.hpp>
+#include <palpate/geometry/sampled_surface.hpp>
+#include <palpate/law/map/duffing_map.hpp>
+#include <palpate/law/map/hertz_map.hpp>
 
 namespace palpate {
 
@@ -54,10 +54,11 @@ template <ForceMap Map, SampledBody B, class Fit>
 }
 }  // namespace detail
 
-/// The law F(D) that `field` has for a patch pressed along the normal, at the nodes of a grid over the body, each for the
-/// surface's point closest to it. Friction and stick-slip work on top as on any law. Left out: the field's own tangential
-/// stiffness (the solver takes the normal law's), pushes off the normal, and what several contacts do to each other.
-/// Reports bad parameters, and a place whose curve Duffing's law does not fit.
+/// The law F(D) that `field` has for a patch pressed along the normal, at the nodes of a grid over the body,
+/// each for the surface's point closest to it. Friction and stick-slip work on top as on any law. Left out:
+/// the field's own tangential stiffness (the solver takes the normal law's), pushes off the normal, and what
+/// several contacts do to each other. Reports bad parameters, and a place whose curve Duffing's law does not
+/// fit.
 template <SampledBody B>
 [[nodiscard]] ResponseMap<DuffingMap<typename B::Scalar>> response_map(
     const ResponseField& field, const B& body, const ResponseMapParams<typename B::Scalar>& params) {
@@ -70,9 +71,9 @@ template <SampledBody B>
   });
 }
 
-/// The same for a contact that grows with depth: a ball of `params.radius`, or another smooth tool with that radius of
-/// curvature, as one point (`SinglePoint`, D its depth). A body without curvature() counts as flat: right while
-/// the ball is small beside the body's own radii.
+/// The same for a contact that grows with depth: a ball of `params.radius`, or another smooth tool with that
+/// radius of curvature, as one point (`SinglePoint`, D its depth). A body without curvature() counts as flat:
+/// right while the ball is small beside the body's own radii.
 template <SampledBody B>
 [[nodiscard]] ResponseMap<HertzMap<typename B::Scalar>> ball_response_map(
     const ResponseField& field, const B& body, const ResponseMapParams<typename B::Scalar>& params) {

@@ -10,9 +10,9 @@
 
 namespace palpate {
 
-/// A list on the heap in whole groups of registers, whatever the vector flags: of two cache lines. A part that begins where `padded()`
-/// of the one before ends begins on a cache line, and a register's load there touches one line instead of two. Sized at set-up; zeros
-/// at first.
+/// A list on the heap in whole groups of registers, whatever the vector flags: of two cache lines. A part
+/// that begins where `padded()` of the one before ends begins on a cache line, and a register's load there
+/// touches one line instead of two. Sized at set-up; zeros at first.
 template <Real S>
 class AlignedList {
  public:

@@ -11,7 +11,8 @@
 
 namespace palpate {
 
-/// What lies past size(): zeros, so that equal lists are equal bytes, or whatever was there, for long lists on a tick's stack.
+/// What lies past size(): zeros, so that equal lists are equal bytes, or whatever was there, for long lists
+/// on a tick's stack.
 enum class Spare { zero, undefined };
 
 namespace detail {

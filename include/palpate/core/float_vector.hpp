@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Floats in one register: the vector extension of gcc and clang, on any processor.
+/// @file Floats in one register: the vector extension of gcc and clang, on any processor.
 ///
-/// For what Eigen's arrays have no operation for (shuffles), where they do not stay in registers at -O2, and in long formulas: each
-/// of Eigen's terms is a type, and gcc takes seconds and gigabytes over thousands of them.
+/// For what Eigen's arrays have no operation for (shuffles), where they do not stay in registers at -O2, and
+/// in long formulas: each of Eigen's terms is a type, and gcc takes seconds and gigabytes over thousands of
+/// them.
 
 #include <palpate/config.hpp>
 
@@ -61,8 +62,8 @@ template <class V>
 /// work(0) .. work(N - 1), written out: compilers keep short loops at -O2, and their arrays in memory.
 template <std::size_t N, class Work>
 PALPATE_INLINE void unrolled(const Work& work) noexcept {
-  [&]<std::size_t... i>(std::index_sequence<i...>) PALPATE_INLINE_LAMBDA { (work(i), ...); }
-  (std::make_index_sequence<N>{});
+  [&]<std::size_t... i>(std::index_sequence<i...>)
+      PALPATE_INLINE_LAMBDA { (work(i), ...); }(std::make_index_sequence<N>{});
 }
 
 template <class V>
@@ -135,7 +136,8 @@ template <class V, std::floating_point S>
   return x - V{};
 }
 [[nodiscard]] PALPATE_INLINE Float4 four(float x) noexcept { return all_of<Float4>(x); }
-/// Entry by entry; b where one is not a number. Written as instructions: gcc turns a comparison with 0 into masks.
+/// Entry by entry; b where one is not a number. Written as instructions: gcc turns a comparison with 0 into
+/// masks.
 template <std::floating_point S>
 [[nodiscard]] constexpr S larger(S a, S b) noexcept {
   return a > b ? a : b;
@@ -206,8 +208,7 @@ template <class V, class Work>
 PALPATE_INLINE void each_four(const Work& work) noexcept {
   [&]<std::size_t... k>(std::index_sequence<k...>) PALPATE_INLINE_LAMBDA {
     (work(std::integral_constant<std::size_t, 4 * k>{}), ...);
-  }
-  (std::make_index_sequence<entries<V> / entries<Float4>>{});
+  }(std::make_index_sequence<entries<V> / entries<Float4>>{});
 }
 [[nodiscard]] PALPATE_INLINE float least_of(Float4 a) noexcept {
   const Float4 two = smaller(a, __builtin_shufflevector(a, a, 2, 3, 0, 1));

@@ -21,8 +21,9 @@ template <class V>
   return std::bit_cast<V>(Bits(start - (std::bit_cast<Bits>(x) >> 1)));
 }
 
-/// 1 / sqrt(x) for x >= 0 to 4 ulp, finite at 0. `V`: float, double, a register or a group of them. std::sqrt may have to set errno,
-/// and then loops do not vectorise. Newton steps and one of third order until rounding.
+/// 1 / sqrt(x) for x >= 0 to 4 ulp, finite at 0. `V`: float, double, a register or a group of them. std::sqrt
+/// may have to set errno, and then loops do not vectorise. Newton steps and one of third order until
+/// rounding.
 template <class V>
 [[nodiscard]] PALPATE_INLINE V inverse_root(const V& x) noexcept {
   using S = EntryOf<V>;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  A few registers that go through every operation of a formula together.
+/// @file A few registers that go through every operation of a formula together.
 ///
-/// The operations of a long formula wait for each other. A processor hides that by working on the loop's next passes meanwhile, as
-/// far as its window of instructions goes, which is half as long where two threads share a core: one or two passes of a formula of a
-/// hundred instructions. Where every operation is done for several registers, others are always at hand.
+/// The operations of a long formula wait for each other. A processor hides that by working on the loop's next
+/// passes meanwhile, as far as its window of instructions goes, which is half as long where two threads share
+/// a core: one or two passes of a formula of a hundred instructions. Where every operation is done for
+/// several registers, others are always at hand.
 
 #include <palpate/core/inverse_root.hpp>
 #include <palpate/core/lane_register.hpp>
@@ -16,8 +17,9 @@
 
 namespace palpate::detail {
 
-/// Four registers, or two of AVX-512's, whose stores are dear: more do not stay in registers. Arithmetic entry by entry.
-/// The register is part of the name, so that objects compiled with other vector flags do not take this one's functions for theirs.
+/// Four registers, or two of AVX-512's, whose stores are dear: more do not stay in registers. Arithmetic
+/// entry by entry. The register is part of the name, so that objects compiled with other vector flags do not
+/// take this one's functions for theirs.
 template <Real S, class Register = LaneRegister<S>>
 class LaneGroup {
  public:

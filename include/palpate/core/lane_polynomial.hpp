@@ -10,8 +10,9 @@
 
 namespace palpate::detail {
 
-/// The first N of c, changed so that sum_k c_k x^k stays as near as it can for |x| <= h: each power from the highest on is replaced
-/// by lower ones with its Chebyshev polynomial, which is off by c_n h^n / 2^(n - 1) at most.
+/// The first N of c, changed so that sum_k c_k x^k stays as near as it can for |x| <= h: each power from the
+/// highest on is replaced by lower ones with its Chebyshev polynomial, which is off by c_n h^n / 2^(n - 1) at
+/// most.
 template <std::size_t N, std::size_t M>
 [[nodiscard]] constexpr std::array<long double, N> economised(std::array<long double, M> c,
                                                               long double h) noexcept {

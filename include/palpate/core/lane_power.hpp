@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Powers of a register of numbers.
+/// @file Powers of a register of numbers.
 ///
-/// Why not Eigen's: gcc does not inline its logarithm of a register of floats, so that the formula around it leaves the registers,
-/// and it takes 5 times as long as this one; in double its logarithm takes 4 and its exponential 2 times as long (gcc 12, AVX-512).
-/// What they look after and this does not: numbers that are zero, negative, infinite or denormal.
+/// Why not Eigen's: gcc does not inline its logarithm of a register of floats, so that the formula around it
+/// leaves the registers, and it takes 5 times as long as this one; in double its logarithm takes 4 and its
+/// exponential 2 times as long (gcc 12, AVX-512). What they look after and this does not: numbers that are
+/// zero, negative, infinite or denormal.
 
 #include <palpate/core/lane_polynomial.hpp>
 #include <palpate/core/lane_register.hpp>
@@ -21,8 +22,8 @@
 
 namespace palpate::detail {
 
-/// How a number lies in memory: exponent plus `bias`, then `mantissa` bits. A whole number n added to `shift` is n + bias in the
-/// lowest of them. (-ffast-math would take such a sum apart: hence the barriers.)
+/// How a number lies in memory: exponent plus `bias`, then `mantissa` bits. A whole number n added to `shift`
+/// is n + bias in the lowest of them. (-ffast-math would take such a sum apart: hence the barriers.)
 template <Real S>
 struct ExponentBits {
   using Bits = std::conditional_t<std::same_as<S, float>, std::uint32_t, std::uint64_t>;

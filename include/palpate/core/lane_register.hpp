@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  As many floats or doubles as the widest register holds: for long formulas over many points, which Eigen's arrays keep in
-/// memory. What is written for `V` also serves a single number.
+/// @file As many floats or doubles as the widest register holds: for long formulas over many points, which
+/// Eigen's arrays keep in memory. What is written for `V` also serves a single number.
 
 #include <palpate/core/float_vector.hpp>
 #include <palpate/core/scalar.hpp>

@@ -13,7 +13,8 @@
 
 namespace palpate::detail {
 
-/// cos y (K = 1) or (sin y) / y (K = 2) for |y| <= pi/2 as a polynomial in y^2 - pi^2 / 8: Taylor's series in y^2
+/// cos y (K = 1) or (sin y) / y (K = 2) for |y| <= pi/2 as a polynomial in y^2 - pi^2 / 8: Taylor's series in
+/// y^2
 ///
 ///     sum_k (-1)^k y^(2k) / (K (K+1) .. (K+2k-1))
 ///

@@ -14,8 +14,8 @@ namespace palpate {
 template <class S>
 concept Real = std::floating_point<S>;
 
-/// True unless x is NaN or infinite. No equation. Tests the exponent's bits, because `std::isfinite` is folded to
-/// `true` under -ffast-math, which game engines use, and a NaN must never reach a motor.
+/// True unless x is NaN or infinite. No equation. Tests the exponent's bits, because `std::isfinite` is
+/// folded to `true` under -ffast-math, which game engines use, and a NaN must never reach a motor.
 template <Real S>
 [[nodiscard]] constexpr bool is_finite(S x) noexcept {
   if constexpr (std::same_as<S, float>) {
@@ -40,8 +40,8 @@ template <Real S>
   }
 }
 
-/// True if |x| <= limit, a finite positive number; false for NaN. No equation. One comparison of the bits, which
-/// -ffast-math leaves alone.
+/// True if |x| <= limit, a finite positive number; false for NaN. No equation. One comparison of the bits,
+/// which -ffast-math leaves alone.
 template <Real S>
 [[nodiscard]] constexpr bool is_within(S x, S limit) noexcept {
   if constexpr (std::same_as<S, float>) {

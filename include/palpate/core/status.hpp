@@ -9,15 +9,16 @@ namespace palpate {
 
 enum class Status : std::uint32_t {
   ok = 0,
-  contact = 1u << 0,             ///< at least one point touches
-  invalid_pose = 1u << 1,        ///< NaN, infinite, absurd or not a rotation: the wrench is zero, contact is forgotten
-  invalid_step = 1u << 2,        ///< dt is not finite or not > 0: rate-dependent terms are left out of this tick
-  region_overflow = 1u << 3,     ///< more regions than the topology holds: the surplus joined the nearest one
-  point_overflow = 1u << 4,      ///< more points touch than the topology holds: the surplus is left out
-  beyond_reach = 1u << 5,        ///< deeper than the surface's reach: the closest point is not unique there
-  beyond_stable = 1u << 6,       ///< past the force law's stable branch: the force is held at its maximum
-  non_finite_result = 1u << 7,   ///< a law gave NaN or infinity: the wrench is zero
-  held_back = 1u << 8,           ///< the tool would have gone through: it is kept on the side it came from (SweptPose)
+  contact = 1u << 0,  ///< at least one point touches
+  invalid_pose =
+      1u << 1,  ///< NaN, infinite, absurd or not a rotation: the wrench is zero, contact is forgotten
+  invalid_step = 1u << 2,     ///< dt is not finite or not > 0: rate-dependent terms are left out of this tick
+  region_overflow = 1u << 3,  ///< more regions than the topology holds: the surplus joined the nearest one
+  point_overflow = 1u << 4,   ///< more points touch than the topology holds: the surplus is left out
+  beyond_reach = 1u << 5,     ///< deeper than the surface's reach: the closest point is not unique there
+  beyond_stable = 1u << 6,    ///< past the force law's stable branch: the force is held at its maximum
+  non_finite_result = 1u << 7,  ///< a law gave NaN or infinity: the wrench is zero
+  held_back = 1u << 8,  ///< the tool would have gone through: it is kept on the side it came from (SweptPose)
 };
 
 [[nodiscard]] constexpr Status operator|(Status a, Status b) noexcept {
@@ -26,7 +27,8 @@ enum class Status : std::uint32_t {
 constexpr Status& operator|=(Status& a, Status b) noexcept { return a = a | b; }
 /// True when `all` has every bit of `asked`.
 [[nodiscard]] constexpr bool has(Status all, Status asked) noexcept {
-  return (static_cast<std::uint32_t>(all) & static_cast<std::uint32_t>(asked)) == static_cast<std::uint32_t>(asked);
+  return (static_cast<std::uint32_t>(all) & static_cast<std::uint32_t>(asked)) ==
+         static_cast<std::uint32_t>(asked);
 }
 
 }  // namespace palpate

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Vectors and matrices of space. Only 3-vectors and 3 x 3 matrices cross the interface: their size and
+/// @file Vectors and matrices of space. Only 3-vectors and 3 x 3 matrices cross the interface: their size and
 /// alignment do not depend on the host's vectorisation flags.
 
 #include <palpate/core/scalar.hpp>

@@ -4,7 +4,7 @@
 /// @file  Which points of the tool may touch: a walk through its tree of balls against the surface.
 
 #include <palpate/detection/tool_points.hpp>
-#include <palpate/surface/concept.hpp>
+#include <palpate/geometry/concept.hpp>
 
 #include <cmath>
 
@@ -33,14 +33,15 @@ PALPATE_FLATTEN [[nodiscard]] inline PointLanes<S> place(const Pose<S>& X, const
 }  // namespace detail
 
 /// Calls visit(begin, count, x) for every leaf of the tool's tree with a point that may be inside the
-/// surface: `count` <= lane_count points from `begin` on, with x their places in object coordinates [m]. No equation.
+/// surface: `count` <= lane_count points from `begin` on, with x their places in object coordinates [m]. No
+/// equation.
 ///
 /// Precondition: X is usable (core/pose.hpp). A ball that surface.separated() says is apart is left out with
 /// all its points; so a tool far away costs one such test, and the rest costs in proportion to what touches:
-/// every point that touches is visited, with the others of its leaf. The loop ends after at most one
-/// test for each node.
+/// every point that touches is visited, with the others of its leaf. The loop ends after at most one test for
+/// each node.
 template <Real S, ContactSurface B, class Visit>
-requires std::same_as<S, typename B::Scalar>
+  requires std::same_as<S, typename B::Scalar>
 inline void for_each_candidate_leaf(const ToolPoints<S>& tool, const Pose<S>& X, const B& surface,
                                     const Visit& visit) noexcept {
   const auto nodes = tool.nodes();
@@ -63,7 +64,7 @@ inline void for_each_candidate_leaf(const ToolPoints<S>& tool, const Pose<S>& X,
 
 /// The same with visit(point, x) for each point, in their order.
 template <Real S, ContactSurface B, class Visit>
-requires std::same_as<S, typename B::Scalar>
+  requires std::same_as<S, typename B::Scalar>
 inline void for_each_candidate(const ToolPoints<S>& tool, const Pose<S>& X, const B& surface,
                                const Visit& visit) noexcept {
   for_each_candidate_leaf(tool, X, surface,

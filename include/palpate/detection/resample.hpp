@@ -3,8 +3,8 @@
 
 /// @file  Even points on a mesh of any resolution, each with its area. Set-up only.
 
-#include <palpate/detection/point_grid.hpp>
-#include <palpate/surface/triangle_mesh.hpp>
+#include <palpate/detection/detail/point_grid.hpp>
+#include <palpate/geometry/triangle_mesh.hpp>
 
 namespace palpate {
 

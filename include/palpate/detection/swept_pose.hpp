@@ -18,8 +18,8 @@ struct HeldPose {
   Status status;
 };
 
-/// Follows the device's pose, but lets no point of the tool go deeper than `depth` on its way. Absent unless you use
-/// it, and then one line before the tick:
+/// Follows the device's pose, but lets no point of the tool go deeper than `depth` on its way. Absent unless
+/// you use it, and then one line before the tick:
 ///
 ///     const auto held = sweep.advance(solver.tool(), solver.object(), X);
 ///     auto result = solver.tick(held.pose);           // result.status |= held.status
@@ -28,24 +28,26 @@ struct HeldPose {
 /// |--------|---------|------|--------------------------------------------------------------------------------|
 /// | L      | `depth` | m    | > 0, below 0.8 of half the thickness of the thinnest part that must not be crossed |
 ///
-/// The tool's centre goes along a line and it turns at an even rate. Conservative advancement [mirtich1996]: depth
-/// changes by no more than the way of a point, so a tool whose deepest point is at delta may go on by L - delta without
-/// a look; nearer to L it tries steps of L / 4 and takes those that end no deeper than L, so no point gets deeper than
-/// 1.25 L. Whatever crosses a part of half thickness 1.25 L would be that deep on the way, and is stopped.
+/// The tool's centre goes along a line and it turns at an even rate. Conservative advancement [mirtich1996]:
+/// depth changes by no more than the way of a point, so a tool whose deepest point is at delta may go on by L
+/// - delta without a look; nearer to L it tries steps of L / 4 and takes those that end no deeper than L, so
+/// no point gets deeper than 1.25 L. Whatever crosses a part of half thickness 1.25 L would be that deep on
+/// the way, and is stopped.
 ///
-/// Why held rather than answered with a larger force: past the middle of a thin part the closest face is the far one, so
-/// depth and force point on through it. Held where it came in, depth is measured from the face that the tool entered, and
-/// the force stays at most at the law's value for L.
+/// Why held rather than answered with a larger force: past the middle of a thin part the closest face is the
+/// far one, so depth and force point on through it. Held where it came in, depth is measured from the face
+/// that the tool entered, and the force stays at most at the law's value for L.
 ///
-/// L holds for the whole object, so a tool is also held where it goes deeper into a thick part: for thin objects, or with
-/// L as deep as you allow anyway. While it is held the tool does not slide along the face; it moves again when the
-/// straight way to the device's pose does not lead deeper. One that grazes the surface over more than about 30 L in one
-/// tick runs out of looks, is held there for this tick and goes on in the next.
+/// L holds for the whole object, so a tool is also held where it goes deeper into a thick part: for thin
+/// objects, or with L as deep as you allow anyway. While it is held the tool does not slide along the face;
+/// it moves again when the straight way to the device's pose does not lead deeper. One that grazes the
+/// surface over more than about 30 L in one tick runs out of looks, is held there for this tick and goes on
+/// in the next.
 ///
-/// advance() is noexcept, without heap; at most 33 looks, each at most a closest point for each node and point of the
-/// tool. In free air it costs one separation test; after a look, nothing until the tool has moved by L - delta. A device
-/// pose that is not usable is handed on to the solver, which refuses it, and the next usable one is taken as it is; so is
-/// the first.
+/// advance() is noexcept, without heap; at most 33 looks, each at most a closest point for each node and
+/// point of the tool. In free air it costs one separation test; after a look, nothing until the tool has
+/// moved by L - delta. A device pose that is not usable is handed on to the solver, which refuses it, and the
+/// next usable one is taken as it is; so is the first.
 template <Real S>
 class SweptPose {
  public:
@@ -54,14 +56,14 @@ class SweptPose {
   }
 
   template <ContactSurface B>
-  requires std::same_as<S, typename B::Scalar>
+    requires std::same_as<S, typename B::Scalar>
   [[nodiscard]] HeldPose<S> advance(const ToolPoints<S>& tool, const B& surface, const Pose<S>& X) noexcept {
     const auto& ball = tool.nodes()[0];
     return advance(ball.centre, ball.radius, surface, X,
                    [&](const Pose<S>& at) { return deepest(tool, at, surface); });
   }
   template <ContactSurface B>
-  requires std::same_as<S, typename B::Scalar>
+    requires std::same_as<S, typename B::Scalar>
   [[nodiscard]] HeldPose<S> advance(const PointTool<S>& tool, const B& surface, const Pose<S>& X) noexcept {
     return advance(tool.tip, S(0), surface, X,
                    [&](const Pose<S>& at) { return -surface.closest(at * tool.tip).distance; });

@@ -5,7 +5,7 @@
 
 #include <palpate/core/pose.hpp>
 #include <palpate/detection/resample.hpp>
-#include <palpate/surface/triangle_mesh.hpp>
+#include <palpate/geometry/triangle_mesh.hpp>
 
 namespace palpate {
 
@@ -29,8 +29,8 @@ struct PointTool {
 /// force law.
 ///
 /// Points are stored by place: `original(i)` is the number that point i had when it was given. The tree's
-/// nodes are in pre-order, a node's points are contiguous, leaves hold at most `lane_count`; a walk needs no stack
-/// (candidates.hpp). Constructors report what is out of range; `spacing` as resample().
+/// nodes are in pre-order, a node's points are contiguous, leaves hold at most `lane_count`; a walk needs no
+/// stack (candidates.hpp). Constructors report what is out of range; `spacing` as resample().
 template <Real S>
 class ToolPoints {
  public:
@@ -110,7 +110,8 @@ class ToolPoints {
   [[nodiscard]] std::span<const S> areas() const noexcept { return areas_; }
   [[nodiscard]] S contact_area() const noexcept { return contact_area_; }
   [[nodiscard]] Vec3<S> centre_of_mass() const noexcept { return centre_of_mass_; }
-  /// The `lane_count` points from `begin` on, where a leaf begins; the last leaf is filled up with its last point.
+  /// The `lane_count` points from `begin` on, where a leaf begins; the last leaf is filled up with its last
+  /// point.
   [[nodiscard]] const PointLanes<S>& lanes(std::size_t begin) const noexcept {
     return lanes_[begin / leaf_size];
   }

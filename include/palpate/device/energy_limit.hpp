@@ -3,17 +3,17 @@
 
 /// @file  A contact gives back no more energy than the hand has put into it.
 
+#include <palpate/contact/contact_state.hpp>
 #include <palpate/core/error.hpp>
 #include <palpate/core/pose.hpp>
-#include <palpate/equivalent/contact_state.hpp>
 
 #include <algorithm>
 #include <span>
 
 namespace palpate {
 
-/// Keeps a contact passive whose force is not, such as one that is looked for on a shape that it deforms itself
-/// (detection/deformed_surface.hpp). One line after the solver's tick:
+/// Keeps a contact passive whose force is not, such as one that is looked for on a shape that it deforms
+/// itself (geometry/deformed_surface.hpp). One line after the solver's tick:
 ///
 ///     result.wrench = limit.pass(result.wrench, pose, solver.contacts());
 ///
@@ -25,21 +25,22 @@ namespace palpate {
 /// | A_0    | `Params::contact_area`   | m^2  | the tool's, as ToolPoints has it; of no account for one point |
 /// |        | `Params::centre_of_mass` | m    | of the tool, in tool coordinates                             |
 ///
-/// U is no more than what the contacts hold by a force law from linear to cubic, evenly pressed. While E is no less, as in
-/// passive scenes, the wrench is passed on bit for bit. Where energy was made, the force fades on its way out without a
-/// jump: with depth at most three times as fast as a linear law's, down to 0 with U; besides, none may spend more than
-/// E in its tick. E never falls below minus half a tick's work, and that is paid back first. So from one moment without
-/// contact to any later time
+/// U is no more than what the contacts hold by a force law from linear to cubic, evenly pressed. While E is
+/// no less, as in passive scenes, the wrench is passed on bit for bit. Where energy was made, the force fades
+/// on its way out without a jump: with depth at most three times as fast as a linear law's, down to 0 with U;
+/// besides, none may spend more than E in its tick. E never falls below minus half a tick's work, and that is
+/// paid back first. So from one moment without contact to any later time
 ///
 ///     work on the hand <= 1/2 max |F . dx|
 ///
-/// by the trapezoidal rule; what holding a force for a whole tick adds is the device's ("Stability" in docs/device.md).
-/// Energy that friction has taken counts as put in until the contact ends; then the rest is forgotten. A tool that is
-/// inside at the start feels nothing until it has been free.
+/// by the trapezoidal rule; what holding a force for a whole tick adds is the device's ("Stability" in
+/// docs/device.md). Energy that friction has taken counts as put in until the contact ends; then the rest is
+/// forgotten. A tool that is inside at the start feels nothing until it has been free.
 ///
-/// The observer of [hannaford2002] with the force scaled, instead of a damper, which would need a speed. Poses are the
-/// device's, in the object's frame; the wrench is about the tool's centre of mass, as ContactSolver's. A wrench or pose
-/// that is not finite: a zero wrench, and E is forgotten. noexcept, without heap.
+/// The observer of [hannaford2002] with the force scaled, instead of a damper, which would need a speed.
+/// Poses are the device's, in the object's frame; the wrench is about the tool's centre of mass, as
+/// ContactSolver's. A wrench or pose that is not finite: a zero wrench, and E is forgotten. noexcept, without
+/// heap.
 template <Real S>
 class EnergyLimit {
  public:

@@ -52,13 +52,13 @@ constexpr GateStatus& operator|=(GateStatus& a, GateStatus b) noexcept { return 
 ///   f1 = gain f,   f2 = f1 min(1, L/|f1|),   f3 = last + (f2 - last) min(1, r dt/|f2 - last|)
 ///
 /// with r = max_force_rate and L the force limit: `max_force`, lowered toward `continuous_force` Fc by a heat
-/// estimate q' = (|f3|^2 - q)/heat_time:  L = max_force for q <= Fc^2/2, falling linearly to Fc at q = Fc^2.
+/// estimate q' = (|f3|^2 - q)/heat_time: L = max_force for q <= Fc^2/2, falling linearly to Fc at q = Fc^2.
 /// Held for ever, a demand above Fc ends at Fc. Torque goes through the same stages without the heat
 /// estimate. The output is continuous in the input except for a trip's drop to zero; |force| <= max_force
 /// always.
 ///
-/// What it does not do: it cannot make a scene passive whose stiffness exceeds 2 b/T (docs/device.md) [colgate1997].
-/// Time and memory: no heap, no lock, no loop. One gate belongs to one thread.
+/// What it does not do: it cannot make a scene passive whose stiffness exceeds 2 b/T (docs/device.md)
+/// [colgate1997]. Time and memory: no heap, no lock, no loop. One gate belongs to one thread.
 template <Real S>
 class Gate {
  public:
@@ -67,15 +67,14 @@ class Gate {
   struct Params {
     S max_force = S(3);  ///< [N]. 0.9 of the 3.3 N peak of the weakest common device
     S continuous_force = std::numeric_limits<S>::infinity();  ///< [N]: what the motors bear for ever
-    S heat_time = S(10);     ///< time constant of the heat estimate [s]; of the order of small motors'
-    S max_torque = S(0.17);  ///< [N m]. 0.9 of the 0.188 N m of a common 6-DOF device
-    S max_force_rate =
-        S(500);  ///< [N/s]. Reached by 500 N/m at 1 m/s: idle in normal use, catches jumps
+    S heat_time = S(10);        ///< time constant of the heat estimate [s]; of the order of small motors'
+    S max_torque = S(0.17);     ///< [N m]. 0.9 of the 0.188 N m of a common 6-DOF device
+    S max_force_rate = S(500);  ///< [N/s]. Reached by 500 N/m at 1 m/s: idle in normal use, catches jumps
     S max_torque_rate = S(25);  ///< [N m/s]. The force rate at a 0.05 m arm
     S arm_after = S(0.5);       ///< time free of contact before force [s], >= 0: a human can let go in it
     S ramp_time = S(0.5);       ///< [s], >= 0
-    S max_gap = S(5e-3);   ///< longest step [s]: five periods at 1 kHz; the hand moves 5 mm at 1 m/s
-    S max_speed = S(1.5);  ///< of the device's tip [m/s]: faster is a fault or an arm let go
+    S max_gap = S(5e-3);        ///< longest step [s]: five periods at 1 kHz; the hand moves 5 mm at 1 m/s
+    S max_speed = S(1.5);       ///< of the device's tip [m/s]: faster is a fault or an arm let go
   };
 
   Gate() : Gate(Params{}) {}

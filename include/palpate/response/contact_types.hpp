@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  What a response field is pressed by: a stuck patch, a sphere; and the constants of second order in depth.
+/// @file What a response field is pressed by: a stuck patch, a sphere; and the constants of second order in
+/// depth.
 
 #include <palpate/core/vector.hpp>
 
@@ -9,7 +10,8 @@
 
 namespace palpate {
 
-/// A stuck flat patch: every surface point within `radius` of `place` moves by `displacement` and turns about `place` by `rotation`.
+/// A stuck flat patch: every surface point within `radius` of `place` moves by `displacement` and turns about
+/// `place` by `rotation`.
 template <Real S>
 struct ResponseContact {
   Vec3<S> place = Vec3<S>::Zero();         ///< on the undeformed surface [m]
@@ -47,15 +49,17 @@ struct DeepFactor {
   [[nodiscard]] double at(double beta) const noexcept { return shallow + deep * beta; }
 };
 
-/// Constants of second order in depth and more, for a stuck patch on neo-Hookean rubber; depth <= 2 a. They are those of nu = 1/2;
-/// `at(nu)` is what is used, below 0.3 that of 0.3. What is drawn near the patch (DeepFactor, contact_near.hpp) was fitted at nu = 0.49 on
-/// finite elements of a half-space alone, pressed normally and askew; the rest on pushes into a cube, a block, a wall and two ellipsoids, but
-/// `turned` and `crossed` on all references of docs/accuracy.md; those of a patch that the tool turns on a half-space and a block; those of a
-/// sphere on a half-space, a block, a slab and two ellipsoids; the change with nu on one normal, one skew and one tilted push and one sphere at
-/// 0.3. Rounded, used for every body.
-/// delta_n, delta_t: local indentation, the displacement of a half-space by the same force, normal and tangential; w_n, w_t: the rest,
-/// by which the body as a whole gives way; s: slope of w_n under the patch. Without constants: the radial double force
-/// -nu / (1 - nu) F_n d_n, F_n at most twice the half-space's, and the force by which a body that spreads under the patch stiffens.
+/// Constants of second order in depth and more, for a stuck patch on neo-Hookean rubber; depth <= 2 a. They
+/// are those of nu = 1/2; `at(nu)` is what is used, below 0.3 that of 0.3. What is drawn near the patch
+/// (DeepFactor, contact_near.hpp) was fitted at nu = 0.49 on finite elements of a half-space alone, pressed
+/// normally and askew; the rest on pushes into a cube, a block, a wall and two ellipsoids, but `turned` and
+/// `crossed` on all references of docs/accuracy.md; those of a patch that the tool turns on a half-space and
+/// a block; those of a sphere on a half-space, a block, a slab and two ellipsoids; the change with nu on one
+/// normal, one skew and one tilted push and one sphere at 0.3. Rounded, used for every body. delta_n,
+/// delta_t: local indentation, the displacement of a half-space by the same force, normal and tangential;
+/// w_n, w_t: the rest, by which the body as a whole gives way; s: slope of w_n under the patch. Without
+/// constants: the radial double force -nu / (1 - nu) F_n d_n, F_n at most twice the half-space's, and the
+/// force by which a body that spreads under the patch stiffens.
 struct SecondOrder {
   double radial = 0.19;  ///< near term along the surface, times delta_n d_n / a; times (2 nu)^3
   DeepFactor radial_4{-0.39, 0.14}, radial_6{0.14, 0.11};  ///< likewise, times s^-4 and s^-6; times 1 - 2.5 b

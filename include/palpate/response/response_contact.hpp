@@ -4,16 +4,16 @@
 /// @file  The tick of a response field: contacts in; forces and the surface's displacement out.
 
 #include <palpate/core/status.hpp>
-#include <palpate/core/vertex_writer.hpp>
-#include <palpate/response/contact_system.hpp>
-#include <palpate/response/pressed_sphere.hpp>
-#include <palpate/response/response_drawing.hpp>
-#include <palpate/response/turned_field.hpp>
+#include <palpate/display/vertex_writer.hpp>
+#include <palpate/response/tick/contact_system.hpp>
+#include <palpate/response/tick/drawing.hpp>
+#include <palpate/response/tick/pressed_sphere.hpp>
+#include <palpate/response/tick/turned_field.hpp>
 
 namespace palpate {
 
-/// Solves up to `Capacity` coupled contacts (contact_system.hpp) and writes the field. Holds the buffers; no heap after
-/// construction. The field must outlive it.
+/// Solves up to `Capacity` coupled contacts (contact_system.hpp) and writes the field. Holds the buffers; no
+/// heap after construction. The field must outlive it.
 template <std::size_t Capacity = 4>
 class ResponseTick {
  public:
@@ -31,10 +31,10 @@ class ResponseTick {
     patch_.reserve(weight_.size());
   }
 
-  /// Forces that the tool exerts on the object, one per contact [N]; with `torques` its torques about the patches' middles, where they
-  /// have moved to [N m]. More than `Capacity` contacts: the surplus gets no
-  /// force, region_overflow. A contact that is not finite, or whose radius or normal is absurd: no forces and no field
-  /// for any, invalid_pose.
+  /// Forces that the tool exerts on the object, one per contact [N]; with `torques` its torques about the
+  /// patches' middles, where they have moved to [N m]. More than `Capacity` contacts: the surplus gets no
+  /// force, region_overflow. A contact that is not finite, or whose radius or normal is absurd: no forces and
+  /// no field for any, invalid_pose.
   template <Real S>
   Status solve(const ResponseContact<S>* contacts, std::size_t count, Vec3<S>* forces,
                Vec3<S>* torques = nullptr) noexcept {
@@ -90,8 +90,8 @@ class ResponseTick {
     each(display, put);
   }
 
-  /// The same, handed out: emit(slot, u) with a lane of displacements from that slot on; a vertex may have several slots,
-  /// all the same. An `emit` that can be assigned is copied and put back.
+  /// The same, handed out: emit(slot, u) with a lane of displacements from that slot on; a vertex may have
+  /// several slots, all the same. An `emit` that can be assigned is copied and put back.
   ///
   /// How: response_drawing.hpp.
   template <class Emit>
@@ -179,8 +179,8 @@ class ResponseTick {
         static_cast<float>(kept) * Eigen::Map<const Eigen::ArrayXf>(second_.data(), size);
   }
 
-  // A body may move farther than the tool by its levers; a field beyond 4 d is one that the mesh does not resolve. It is
-  // drawn smaller: never a spike.
+  // A body may move farther than the tool by its levers; a field beyond 4 d is one that the mesh does not
+  // resolve. It is drawn smaller: never a spike.
   void hold_back() noexcept {
     const auto share = static_cast<float>(detail::fading(largest(total_), 16 * contact_.deepest2(count_)));
     if (!(share < 1)) return;
@@ -196,8 +196,8 @@ class ResponseTick {
     return double((u.head(n).square() + u.segment(n, n).square() + u.tail(n).square()).maxCoeff());
   }
 
-  // The body's answer to the loads of second order. Where the mesh does not resolve it, it can be any size: held to about
-  // twice d.
+  // The body's answer to the loads of second order. Where the mesh does not resolve it, it can be any size:
+  // held to about twice d.
   void add_second(const detail::PlacedContact& c) noexcept {
     using Row = Eigen::Map<const Eigen::ArrayXf>;
     const auto n = static_cast<Eigen::Index>(field_->stride()), size = 3 * n;

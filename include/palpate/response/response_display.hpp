@@ -7,8 +7,8 @@
 
 namespace palpate {
 
-/// Display vertices sorted by the solve mesh's triangles, each with its weights. It belongs to no tick and serves any
-/// number of them. Reports points that are not finite.
+/// Display vertices sorted by the solve mesh's triangles, each with its weights. It belongs to no tick and
+/// serves any number of them. Reports points that are not finite.
 ///
 /// Memory: 24 bytes per vertex and 28 per triangle of the solve mesh. Set-up: about a microsecond per vertex.
 class ResponseDisplay {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Response field: an object's elastic answer to contact anywhere on its surface, computed once at set-up from the
-/// closed surface mesh, E, nu and the fixed region. The tick that uses it is in response_contact.hpp.
+/// @file Response field: an object's elastic answer to contact anywhere on its surface, computed once at
+/// set-up from the closed surface mesh, E, nu and the fixed region. The tick that uses it is in
+/// response_contact.hpp.
 ///
 /// | symbol | name                          | unit | range                                   |
 /// |--------|-------------------------------|------|-----------------------------------------|
@@ -10,16 +11,17 @@
 /// | nu     | Poisson's ratio               | -    | [0, 1/2]; 1/2 is exact, nothing locks   |
 /// | n      | vertices of the solve mesh    | -    | [20, 5000]; error about 1/n             |
 ///
-/// Memory: 84 n m bytes for the columns, m the places of loads (load_places.hpp): with n = 600 34 MB for a smooth body, 95 to
-/// 110 MB for one that is all next to its edges, as a block; see `memory()`. During set-up about twice that and 150 n^2 bytes more.
-/// Set-up: O(n^3), seconds. Several pieces are allowed, each held somewhere.
-/// Limits: small strain per unit load; parts thinner than an edge of the solve mesh bend too little: `unresolved_area()`.
-/// Reports (error.hpp) bad E, nu, mesh or fixed region. Source: [brebbia1984], [james1999].
+/// Memory: 84 n m bytes for the columns, m the places of loads (load_places.hpp): with n = 600 34 MB for a
+/// smooth body, 95 to 110 MB for one that is all next to its edges, as a block; see `memory()`. During set-up
+/// about twice that and 150 n^2 bytes more. Set-up: O(n^3), seconds. Several pieces are allowed, each held
+/// somewhere. Limits: small strain per unit load; parts thinner than an edge of the solve mesh bend too
+/// little: `unresolved_area()`. Reports (error.hpp) bad E, nu, mesh or fixed region. Source: [brebbia1984],
+/// [james1999].
 
-#include <palpate/response/bent_edges.hpp>
-#include <palpate/response/patch_table.hpp>
-#include <palpate/response/response_columns.hpp>
-#include <palpate/response/rotation_table.hpp>
+#include <palpate/response/setup/response_columns.hpp>
+#include <palpate/response/tick/bent_edges.hpp>
+#include <palpate/response/tick/patch_table.hpp>
+#include <palpate/response/tick/rotation_table.hpp>
 
 namespace palpate {
 
@@ -50,8 +52,8 @@ class ResponseField {
     unsigned threads = 2;                       ///< at set-up only; see parallel.hpp for hosts without
     std::function<void(double)> progress = {};  ///< called in the calling thread with what is done, 0 to 1
   };
-  /// Fields per solved node of the touch mesh: unit forces along x, y, z; unit radial double force; unit tilts along its two tangents; unit twist
-  /// about its inward normal.
+  /// Fields per solved node of the touch mesh: unit forces along x, y, z; unit radial double force; unit
+  /// tilts along its two tangents; unit twist about its inward normal.
   static constexpr std::size_t loads = 7;
 
   /// `fixed` is true where the object is held; the mesh is cut along its boundary.
@@ -65,7 +67,8 @@ class ResponseField {
     }
     build(cut, inside, params);
   }
-  /// The object is held at the listed vertices: on every triangle that has all three of its corners in the list.
+  /// The object is held at the listed vertices: on every triangle that has all three of its corners in the
+  /// list.
   template <Real S>
   ResponseField(const MeshData<S>& mesh, const std::vector<std::uint32_t>& fixed_vertices,
                 const Params& params) {
@@ -117,8 +120,8 @@ class ResponseField {
   [[nodiscard]] double nu() const noexcept { return nu_; }
   [[nodiscard]] double shear_modulus() const noexcept { return E_ / (2 * (1 + nu_)); }
   [[nodiscard]] const SolveMesh& mesh() const noexcept { return mesh_; }
-  /// Fraction of the free surface's area where the body is thinner than the solve mesh's edges (see palpate::unresolved_area):
-  /// 0 is good, 1 is a plate with too few vertices. Milliseconds; set-up only.
+  /// Fraction of the free surface's area where the body is thinner than the solve mesh's edges (see
+  /// palpate::unresolved_area): 0 is good, 1 is a plate with too few vertices. Milliseconds; set-up only.
   [[nodiscard]] double unresolved_area() const { return palpate::unresolved_area(mesh_); }
   [[nodiscard]] const TouchMesh& touch() const noexcept { return touch_; }
   [[nodiscard]] const PatchTable& table() const noexcept { return table_; }
@@ -133,7 +136,8 @@ class ResponseField {
   [[nodiscard]] static constexpr std::size_t padded(std::size_t vertices) noexcept {
     return (vertices + 7) / 8 * 8;
   }
-  /// mu w of load l of solved node k: x at every vertex, y and z `stride()` further each [1/m]; l >= 3: [1/m^2].
+  /// mu w of load l of solved node k: x at every vertex, y and z `stride()` further each [1/m]; l >= 3:
+  /// [1/m^2].
   [[nodiscard]] const float* column(std::size_t k, std::size_t l) const noexcept {
     return &columns_[(loads * k + l) * 3 * stride_];
   }

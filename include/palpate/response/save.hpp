@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  A finished response field to a block of bytes and back, so that set-up is paid once. Set-up only; no I/O here:
-/// write the bytes wherever you keep them.
+/// @file A finished response field to a block of bytes and back, so that set-up is paid once. Set-up only; no
+/// I/O here: write the bytes wherever you keep them.
 ///
 /// | bytes | content                                                              |
 /// |-------|----------------------------------------------------------------------|
@@ -13,8 +13,8 @@
 /// | 8     | checksum of those bytes (FNV-1a over 8-byte words, four interleaved) |
 /// | ...   | E, nu, length, then each list: its length, its items                 |
 ///
-/// Little and big endian machines do not read each other's files. Bytes that are foreign, of another version, cut short
-/// or changed are refused with an error that says which; so are contents that no set-up makes.
+/// Little and big endian machines do not read each other's files. Bytes that are foreign, of another version,
+/// cut short or changed are refused with an error that says which; so are contents that no set-up makes.
 
 #include <palpate/response/response_field.hpp>
 

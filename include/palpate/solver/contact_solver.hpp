@@ -9,16 +9,16 @@
 #include <palpate/core/status.hpp>
 #include <palpate/core/absent.hpp>
 #include <palpate/core/fixed_vector.hpp>
-#include <palpate/surface/concept.hpp>
+#include <palpate/geometry/concept.hpp>
 #include <palpate/detection/tool_points.hpp>
-#include <palpate/region/topology.hpp>
-#include <palpate/region/coupling.hpp>
-#include <palpate/friction/none.hpp>
-#include <palpate/equivalent/region_sum.hpp>
-#include <palpate/equivalent/anchor.hpp>
-#include <palpate/equivalent/contact_state.hpp>
-#include <palpate/solver/force_map.hpp>
-#include <palpate/solver/gather.hpp>
+#include <palpate/contact/topology.hpp>
+#include <palpate/contact/coupling.hpp>
+#include <palpate/law/friction/none.hpp>
+#include <palpate/contact/region_sum.hpp>
+#include <palpate/law/friction/anchor.hpp>
+#include <palpate/contact/contact_state.hpp>
+#include <palpate/law/map/concept.hpp>
+#include <palpate/solver/detail/gather.hpp>
 // clang-format on
 
 #include <algorithm>
@@ -55,16 +55,16 @@ struct TickResult {
 /// | wrench     | `Acting`   | AtContact, AtMassCentre                                             | AtContact    |
 /// | coupling   | `Coupling` | IndependentRegions, RegionSkeletons (section VI)                    | IndependentRegions |
 ///
-/// Slip and skew rules belong to the friction law, mass sharing to the topology. An absent policy is a type and costs
-/// no byte and no instruction.
+/// Slip and skew rules belong to the friction law, mass sharing to the topology. An absent policy is a type
+/// and costs no byte and no instruction.
 ///
-/// Real time: tick() is noexcept, takes no heap, lock or I/O, and its time is bounded by the tool's points. Same poses,
-/// same bits. From the third tick on at one pose the last result stands and nothing is worked out. A pose that is not
-/// finite or not a rotation gives the zero wrench and `Status::invalid_pose`; contact is forgotten and begins anew at the
-/// next usable pose.
-template <ContactSurface Object, ForceModel Force, FrictionLaw Friction = Frictionless<typename Object::Scalar>,
-          Topology Contacts = SinglePoint, WrenchPolicy Acting = AtContact,
-          RegionForceCoupling Coupling = IndependentRegions>
+/// Real time: tick() is noexcept, takes no heap, lock or I/O, and its time is bounded by the tool's points.
+/// Same poses, same bits. From the third tick on at one pose the last result stands and nothing is worked
+/// out. A pose that is not finite or not a rotation gives the zero wrench and `Status::invalid_pose`; contact
+/// is forgotten and begins anew at the next usable pose.
+template <ContactSurface Object, ForceModel Force,
+          FrictionLaw Friction = Frictionless<typename Object::Scalar>, Topology Contacts = SinglePoint,
+          WrenchPolicy Acting = AtContact, RegionForceCoupling Coupling = IndependentRegions>
   requires std::same_as<typename Object::Scalar, typename Force::Scalar> &&
            std::same_as<typename Object::Scalar, typename Friction::Scalar>
 class ContactSolver {
@@ -102,8 +102,8 @@ class ContactSolver {
     return step(X, S(0), Status::ok);
   }
 
-  /// One tick, dt [s] after the last. Only rate-dependent force laws use dt; if it is not finite or not > 0 the rate
-  /// terms are left out of this tick (`Status::invalid_step`).
+  /// One tick, dt [s] after the last. Only rate-dependent force laws use dt; if it is not finite or not > 0
+  /// the rate terms are left out of this tick (`Status::invalid_step`).
   [[nodiscard]] TickResult<S> tick(const Pose<S>& X, [[maybe_unused]] S dt) noexcept {
     if constexpr (is_rate_dependent) {
       if (!is_finite(dt) || !(dt > S(0))) return step(X, S(0), Status::invalid_step);
@@ -129,7 +129,7 @@ class ContactSolver {
   }
 
   [[nodiscard]] const Object& object() const noexcept { return object_; }
-  /// For objects that follow a deformation (detection/deformed_surface.hpp): the next tick is worked out anew.
+  /// For objects that follow a deformation (geometry/deformed_surface.hpp): the next tick is worked out anew.
   [[nodiscard]] Object& mutable_object() noexcept {
     last_.ticks = (std::min)(last_.ticks, 1);
     return object_;
@@ -156,7 +156,8 @@ class ContactSolver {
   using Present = std::conditional_t<present, Item, Absent<Role>>;
 
   TickResult<S> step(const Pose<S>& X, [[maybe_unused]] S dt, Status status) noexcept {
-    // The second tick at a pose settles what the motion into it left (slip, rate); after that nothing changes.
+    // The second tick at a pose settles what the motion into it left (slip, rate); after that nothing
+    // changes.
     const bool again = last_.ticks > 0 && same_bits(X, last_.pose);
     if (again && last_.ticks > 1) return {last_.result.wrench, last_.result.status | status};
     if (!is_usable(X)) {
@@ -195,7 +196,8 @@ class ContactSolver {
     const S depth = equivalent_depth(sum, normal_force);
     if constexpr (is_rate_dependent) {
       if (dt > S(0) && last_.ticks > 0 && normal_force > (std::numeric_limits<S>::min)()) {
-        // How fast the tool's point at the pressure centre goes in. Differences of depths would jump when regions merge.
+        // How fast the tool's point at the pressure centre goes in. Differences of depths would jump when
+        // regions merge.
         const Vec3<S> centre = sum.centre();
         const S gone_in = normal.dot(last_.pose * X.to_tool(centre) - centre);
         const S rate = (std::min)(gone_in, sum.deepest) / dt;  // no deeper than it came
@@ -204,17 +206,18 @@ class ContactSolver {
         normal_force = total;
       }
     }
-    ContactState<S> contact{slot.id,      sum.points,        ContactMode::frictionless, sum.centre(),
-                            normal,       -depth * normal,   sum.force,                 Vec3<S>::Zero(),
-                            normal_force, sum.area()};
+    ContactState<S> contact{slot.id,         sum.points, ContactMode::frictionless, sum.centre(), normal,
+                            -depth * normal, sum.force,  Vec3<S>::Zero(),           normal_force, sum.area()};
     if constexpr (has_friction) {
       Stuck& stuck = stuck_[k];
       if (slot.merged == 0 && slot.parent == RegionSlot::none) {
         stuck.anchor = Anchor<S>::begin(X, contact.centre, normal, depth);
       }
       const AnchoredForce<S> held = advance<typename Friction::Slip, typename Friction::Skew>(
-          stuck.anchor, friction_, detail::law_at(force_, contact.centre), X, normal, contact.centre, depth, normal_force);
-      if (held.normal_force != normal_force && normal_force > S(0)) sum.scale(held.normal_force / normal_force);
+          stuck.anchor, friction_, detail::law_at(force_, contact.centre), X, normal, contact.centre, depth,
+          normal_force);
+      if (held.normal_force != normal_force && normal_force > S(0))
+        sum.scale(held.normal_force / normal_force);
       stuck.friction = held.friction;
       stuck.depth = depth;
       contact.mode = stuck.anchor.slip.sliding ? ContactMode::sliding : ContactMode::sticking;
@@ -268,9 +271,9 @@ class ContactSolver {
     }
   }
 
-  /// Carries friction over when regions merge or split: each region takes the share of every predecessor's tangential
-  /// force and elastic energy that its normal force is of all of that predecessor's successors; so the sum of the
-  /// forces is kept and no energy is added.
+  /// Carries friction over when regions merge or split: each region takes the share of every predecessor's
+  /// tangential force and elastic energy that its normal force is of all of that predecessor's successors; so
+  /// the sum of the forces is kept and no energy is added.
   void inherit(const Pose<S>& X, const Sums& sums) noexcept {
     using Skew = typename Friction::Skew;
     const std::array<Stuck, max_regions> last = stuck_;
@@ -285,15 +288,18 @@ class ContactSolver {
     }
     for (std::size_t k = 0; k < max_regions; ++k) {
       const RegionSlot& slot = collector_.slot(k);
-      if (!slot.active || (slot.merged == std::uint64_t(1) << k && heirs[k] == 1)) continue;  // lives on unchanged
-      Vec3<S> friction = Vec3<S>::Zero(), point_T = Vec3<S>::Zero(), tip = Vec3<S>::Zero(), normal = Vec3<S>::Zero();
+      if (!slot.active || (slot.merged == std::uint64_t(1) << k && heirs[k] == 1))
+        continue;  // lives on unchanged
+      Vec3<S> friction = Vec3<S>::Zero(), point_T = Vec3<S>::Zero(), tip = Vec3<S>::Zero(),
+              normal = Vec3<S>::Zero();
       S weight = S(0), strength = S(1), energy = S(0);
       bool sliding = false;
       for (std::size_t p = 0; p < max_regions; ++p) {
         if (!slot.inherits(p) || !(share[p] > S(0))) continue;
         const Anchor<S>& before = last[p].anchor;
         const S fraction = sums[k].magnitude / share[p];
-        const S w = fraction * last[p].friction.norm() + std::numeric_limits<S>::epsilon() * sums[k].magnitude;
+        const S w =
+            fraction * last[p].friction.norm() + std::numeric_limits<S>::epsilon() * sums[k].magnitude;
         friction += fraction * last[p].friction;
         point_T += w * before.point_T;
         tip += w * before.tip;
@@ -315,13 +321,17 @@ class ContactSolver {
       }
       anchor.point_T = point_T / weight;
       anchor.tip = tip / weight;
-      // A normal across the force keeps all of it where regions on both sides of an edge merge; slips turn it back.
+      // A normal across the force keeps all of it where regions on both sides of an edge merge; slips turn it
+      // back.
       const Vec3<S> along = unit_or<S>(friction, Vec3<S>::Zero());
       const S held = friction.norm();
-      anchor.normal = unit_or<S>(tangential<S>(unit_or<S>(normal, sums[k].normal()), along), perpendicular<S>(along));
-      // A merged region's limit may be below the sum of its parts' (beta < 1): the excess wears off with travel.
+      anchor.normal =
+          unit_or<S>(tangential<S>(unit_or<S>(normal, sums[k].normal()), along), perpendicular<S>(along));
+      // A merged region's limit may be below the sum of its parts' (beta < 1): the excess wears off with
+      // travel.
       const S limit = sliding ? friction_.sliding_limit(normal_force) : friction_.static_limit(normal_force);
-      if (limit > S(0)) strength = (std::max)(strength, (std::min)(held / limit, S(1) / (std::numeric_limits<S>::min)()));
+      if (limit > S(0))
+        strength = (std::max)(strength, (std::min)(held / limit, S(1) / (std::numeric_limits<S>::min)()));
       anchor.slip = {sliding, strength};
       const S stretch = anchor.slip.template hold<Skew>(law, depth, held, energy);
       anchor.slip.slid = stretch;

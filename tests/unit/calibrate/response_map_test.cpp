@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <palpate/calibrate/response_map.hpp>
+#include <palpate/geometry/ellipsoid.hpp>
 #include <palpate/solver/contact_solver.hpp>
-#include <palpate/surface/ellipsoid.hpp>
 
 #include "support/check.hpp"
 #include "support/response_meshes.hpp"
@@ -26,12 +26,13 @@ TEST_CASE("a tool on a fitted map feels what the field answers, anywhere on the 
   const ResponseField field(test::ellipsoid_mesh(axes, 8), [](const V& p) { return p.y() <= -0.03; },
                             {.E = 1e5, .nu = 0.5, .mesh = {.vertices = 150}, .threads = 1});
   const double a = 0.005, depth = 0.004;
-  const auto fitted = response_map(
-      field, body, {.radius = a, .depth = depth, .spacing = field.mesh().length / 3});
+  const auto fitted =
+      response_map(field, body, {.radius = a, .depth = depth, .spacing = field.mesh().length / 3});
   CHECK(fitted.worst_rms < 0.02);  // as in response_curve_test.cpp
   ContactSolver<Ellipsoid<double>, DuffingMap<double>> solver({body, {}, fitted.map, {}, {}});
   ResponseTick<1> tick(field);
-  const double beside = -0.03 + field.mesh().length;  // by the fixed region the stiffness rises within an edge
+  const double beside =
+      -0.03 + field.mesh().length;   // by the fixed region the stiffness rises within an edge
   CHECK(fitted.where.y() < beside);  // the worst fit is there
   std::mt19937 random(5);
   double squares = 0, least = 1e9, most = 0;
@@ -56,15 +57,10 @@ TEST_CASE("a tool on a fitted map feels what the field answers, anywhere on the 
         1.2 * least);  // the body is not equally stiff everywhere, so that there is something to follow
   // The fits' 0.2 %, and what the map misses of a field that is itself linear over an edge.
   CHECK(std::sqrt(squares / count) < 0.005);
-  CHECK_THROWS_AS(
-      (void)response_map(field, body, {.radius = a, .depth = 0, .spacing = 0.01}),
-      SetupError);
-  CHECK_THROWS_AS(
-      (void)response_map(field, body, {.radius = -a, .depth = depth, .spacing = 0.01}),
-      SetupError);
-  CHECK_THROWS_AS(
-      (void)response_map(field, body, {.radius = a, .depth = depth, .spacing = 0}),
-      SetupError);
+  CHECK_THROWS_AS((void)response_map(field, body, {.radius = a, .depth = 0, .spacing = 0.01}), SetupError);
+  CHECK_THROWS_AS((void)response_map(field, body, {.radius = -a, .depth = depth, .spacing = 0.01}),
+                  SetupError);
+  CHECK_THROWS_AS((void)response_map(field, body, {.radius = a, .depth = depth, .spacing = 0}), SetupError);
 }
 
 TEST_CASE("a ball on a fitted map feels what the field answers to a contact that grows") {
@@ -79,7 +75,8 @@ TEST_CASE("a ball on a fitted map feels what the field answers to a contact that
   CHECK(fitted.worst_rms < 0.2);  // 0.17 met
   ContactSolver<Ellipsoid<double>, HertzMap<double>> solver({body, {}, fitted.map, {}, {}});
   ResponseTick<1> tick(field);
-  const double beside = -0.03 + field.mesh().length;  // by the fixed region the stiffness rises within an edge
+  const double beside =
+      -0.03 + field.mesh().length;  // by the fixed region the stiffness rises within an edge
   CHECK(fitted.where.y() < beside);
   std::mt19937 random(5);
   double squares = 0;
@@ -89,7 +86,8 @@ TEST_CASE("a ball on a fitted map feels what the field answers to a contact that
     if (at.position.y() < beside) continue;
     const double d = depth * (0.25 + 0.75 * count / 200);
     const auto k = body.curvature(at.position);
-    const double asked = tick.solve(SphereContact<double>{at.position, at.normal, ball, k.k1 + k.k2, d}).force;
+    const double asked =
+        tick.solve(SphereContact<double>{at.position, at.normal, ball, k.k1 + k.k2, d}).force;
     const double felt =
         solver.tick({Mat3<double>::Identity(), at.position - d * at.normal}).wrench.force.norm();
     squares += std::pow(felt / asked - 1, 2);
@@ -97,6 +95,8 @@ TEST_CASE("a ball on a fitted map feels what the field answers to a contact that
   }
   MESSAGE("rms ", std::sqrt(squares / count), ", worst fit ", fitted.worst_rms);
   CHECK(std::sqrt(squares / count) < 0.005);  // the fits' 0.7 % at worst
-  CHECK_THROWS_AS((void)ball_response_map(field, body, {.radius = ball, .depth = -1, .spacing = 0.01}), SetupError);
-  CHECK_THROWS_AS((void)ball_response_map(field, body, {.radius = 0, .depth = depth, .spacing = 0.01}), SetupError);
+  CHECK_THROWS_AS((void)ball_response_map(field, body, {.radius = ball, .depth = -1, .spacing = 0.01}),
+                  SetupError);
+  CHECK_THROWS_AS((void)ball_response_map(field, body, {.radius = 0, .depth = depth, .spacing = 0.01}),
+                  SetupError);
 }

@@ -12,7 +12,8 @@
 using namespace palpate;
 
 namespace {
-// log2 and exp2 have no loops: errors in units of epsilon are those of a few roundings, measured 1.3 and 1.5 at most.
+// log2 and exp2 have no loops: errors in units of epsilon are those of a few roundings, measured 1.3 and 1.5
+// at most.
 template <Real S, class F, class Reference>
 double worst(const F& f, const Reference& reference, double from, double to, bool logarithmic) {
   using V = detail::LaneRegister<S>;
@@ -59,7 +60,8 @@ TEST_CASE_TEMPLATE("logarithms and powers of registers", S, float, double) {
   CHECK(first(exp2(detail::all_of<V>(S(-1e9)))) == std::numeric_limits<S>::min());
   CHECK(first(exp2(detail::all_of<V>(S(1e9)))) == std::ldexp(S(1), static_cast<int>(top)));
 
-  // Powers: the logarithm's error, 2 epsilon at most (above), times the exponent, and 3 roundings more; whole ones by products.
+  // Powers: the logarithm's error, 2 epsilon at most (above), times the exponent, and 3 roundings more; whole
+  // ones by products.
   for (const S e : {S(0), S(1), S(5), S(18), S(-0.7), S(1.3), S(4.6666)}) {
     const detail::LanePower<S> power(e);
     for (S x = S(0.01); x < S(2); x *= S(1.1)) {

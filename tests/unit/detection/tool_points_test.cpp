@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 
 #include <palpate/detection/candidates.hpp>
-#include <palpate/detection/proximity_graph.hpp>
+#include <palpate/detection/detail/proximity_graph.hpp>
 #include <palpate/detection/tool_points.hpp>
 
-#include <palpate/surface/box.hpp>
-#include <palpate/surface/ellipsoid.hpp>
-#include <palpate/surface/sphere.hpp>
+#include <palpate/geometry/box.hpp>
+#include <palpate/geometry/ellipsoid.hpp>
+#include <palpate/geometry/sphere.hpp>
 #include <support/check.hpp>
 #include <support/no_heap.hpp>
 

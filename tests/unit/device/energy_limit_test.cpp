@@ -26,7 +26,8 @@ ContactState<double> touching(double depth, double force) {
       force, 0};
 }
 
-// A wall y < 0 whose force on the way out is `more` times that on the way in; in and out again 2 mm in a second.
+// A wall y < 0 whose force on the way out is `more` times that on the way in; in and out again 2 mm in a
+// second.
 struct Press {
   std::vector<double> asked, given, stored;
   double work = 0, most = 0, tick = 0;  // on the hand: at the end, at its most, and of one tick at most [J]

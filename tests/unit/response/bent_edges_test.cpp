@@ -56,8 +56,8 @@ TEST_CASE("a quadratic field is drawn exactly on a face, near a contact; far fro
       const detail::Lane3 more = bend(third, third);
       const V drawn = (u(p) + u(q) + u(r)) / 3 + V(more.x[0], more.y[0], more.z[0]),
               linear = (u(p) + u(q) + u(r)) / 3;
-      // The penalty on second derivatives (edge_bend.hpp) makes them too small where neighbours lie to one side, next to an edge of
-      // the cube: 8 % met.
+      // The penalty on second derivatives (edge_bend.hpp) makes them too small where neighbours lie to one
+      // side, next to an edge of the cube: 8 % met.
       CHECK((drawn - u(middle)).norm() < 0.1 * (linear - u(middle)).norm());
       ++checked;
     }
@@ -177,7 +177,8 @@ TEST_CASE("near fields are drawn by their values at the middles of edges, a cont
       bent_error += (linear + value(part(third, third)) - near(c, middle)).norm();
       ++checked;
     }
-    // Nothing else bends. Fields of 50 in float, four times the sum of some 25 differences of theirs: 7e-6 met.
+    // Nothing else bends. Fields of 50 in float, four times the sum of some 25 differences of theirs: 7e-6
+    // met.
     if (bent.find(t, all)) CHECK((value(all(third, third)) - apart).norm() < 1e-4);
   }
   CHECK(checked > 40);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <palpate/response/boundary_element.hpp>
+#include <palpate/response/setup/boundary_element.hpp>
 
 #include "support/check.hpp"
 #include "support/response_bodies.hpp"
@@ -12,7 +12,8 @@ using Eigen::VectorXd;
 // Held below y = low; a small solve mesh.
 SolveMesh solve_mesh(const MeshData<double>& mesh, double low, double vertices) {
   std::vector<std::uint8_t> held;
-  for (const auto& t : mesh.triangles) held.push_back((mesh.vertices[t[0]].y() + mesh.vertices[t[1]].y() + mesh.vertices[t[2]].y()) / 3 <= low);
+  for (const auto& t : mesh.triangles)
+    held.push_back((mesh.vertices[t[0]].y() + mesh.vertices[t[1]].y() + mesh.vertices[t[2]].y()) / 3 <= low);
   return make_solve_mesh(SmoothSurface(mesh), held, {.vertices = vertices, .rim_ratio = 0.6});
 }
 template <class F>
@@ -35,7 +36,8 @@ TEST_CASE("box: rigid modes and uniform strain meet the discrete equation, nu = 
     INFO("nu ", nu);
     const BoundaryElements bem(m, nu, 1);
     const VectorXd shift = at_vertices(m, [](const V&) { return V(1, 2, 3); });
-    CHECK_ABSOLUTE((bem.H() * shift).norm() / (bem.H().norm() * shift.norm()), 0.0, 1e-15);  // by construction
+    CHECK_ABSOLUTE((bem.H() * shift).norm() / (bem.H().norm() * shift.norm()), 0.0,
+                   1e-15);  // by construction
     const VectorXd turn = at_vertices(m, [](const V& x) { return V(V(1, -1, 2).cross(x)); });
     CHECK_ABSOLUTE((bem.H() * turn).norm() / turn.norm(), 0.0, 1e-4);  // flat triangles: quadrature only
     // Volume kept, so that the stress is 2 mu times the strain at any nu; at nu < 1/2 a dilatation too.
@@ -46,7 +48,8 @@ TEST_CASE("box: rigid modes and uniform strain meet the discrete equation, nu = 
       strain += 0.5 * Mat3<double>::Identity();
       stress = 2 * strain + 2 * nu / (1 - 2 * nu) * strain.trace() * Mat3<double>::Identity();
     }
-    const VectorXd u = at_vertices(m, [&](const V& x) { return V(strain * x); }), t = at_nodes(m, [&](const V& n) { return V(stress * n); });
+    const VectorXd u = at_vertices(m, [&](const V& x) { return V(strain * x); }),
+                   t = at_nodes(m, [&](const V& n) { return V(stress * n); });
     CHECK_ABSOLUTE((bem.H() * u - bem.G() * t).norm() / (bem.G() * t).norm(), 0.0, 1e-3);  // quadrature only
   }
 }
@@ -60,8 +63,10 @@ TEST_CASE("bar held at its end and pulled, nu = 0: the exact linear displacement
   bem.factorise();
   bem.solve(u);
   for (std::size_t v = 0; v < m.vertices.size(); ++v) {
-    const V exact = m.fixed_vertex[v] ? V(0, -2, 0) : V(0, m.vertices[v].y(), 0);  // at held vertices: the traction
-    CHECK_ABSOLUTE((u.block<3, 1>(3 * Eigen::Index(v), 0) - exact).norm(), 0.0, m.fixed_vertex[v] ? 0.05 : 5e-3);  // quadrature; traction is rougher
+    const V exact =
+        m.fixed_vertex[v] ? V(0, -2, 0) : V(0, m.vertices[v].y(), 0);  // at held vertices: the traction
+    CHECK_ABSOLUTE((u.block<3, 1>(3 * Eigen::Index(v), 0) - exact).norm(), 0.0,
+                   m.fixed_vertex[v] ? 0.05 : 5e-3);  // quadrature; traction is rougher
   }
 }
 
@@ -81,8 +86,10 @@ TEST_CASE("sphere under uniform pressure: second order in the edge length") {
     const VectorXd u = (bem.H() + modes * modes.transpose()).partialPivLu().solve(bem.G() * t);
     double sum = 0;
     V mean = V::Zero();
-    for (std::size_t v = 0; v < m.vertices.size(); ++v) mean += (u.segment<3>(3 * Eigen::Index(v)) - exact * m.vertices[v]) / double(m.vertices.size());
-    for (std::size_t v = 0; v < m.vertices.size(); ++v) sum += std::pow((u.segment<3>(3 * Eigen::Index(v)) - mean).dot(m.vertices[v]) / exact - 1, 2);
+    for (std::size_t v = 0; v < m.vertices.size(); ++v)
+      mean += (u.segment<3>(3 * Eigen::Index(v)) - exact * m.vertices[v]) / double(m.vertices.size());
+    for (std::size_t v = 0; v < m.vertices.size(); ++v)
+      sum += std::pow((u.segment<3>(3 * Eigen::Index(v)) - mean).dot(m.vertices[v]) / exact - 1, 2);
     error[k] = std::sqrt(sum / double(m.vertices.size()));
     edge[k] = m.length;
   }
@@ -97,11 +104,14 @@ TEST_CASE("set-up refuses an open mesh, an empty fixed region, nu out of range")
   open.triangles.pop_back();
   CHECK_THROWS_AS(SmoothSurface{open}, SetupError);
   const SmoothSurface closed(test::box_mesh(V(1, 1, 1), 2));
-  CHECK_THROWS_AS((void)make_solve_mesh(closed, std::vector<std::uint8_t>(closed.mesh().triangles.size(), 0)), SetupError);
+  CHECK_THROWS_AS((void)make_solve_mesh(closed, std::vector<std::uint8_t>(closed.mesh().triangles.size(), 0)),
+                  SetupError);
   CHECK_THROWS_AS(BoundaryElements(solve_mesh(test::box_mesh(V(1, 1, 1), 4), 1e-9, 60), 0.51, 1), SetupError);
 }
 
-TEST_CASE("bar 1:6 held at its end: bent, Timoshenko's deflection; twisted, Saint-Venant's rate, with the observed order") {
+TEST_CASE(
+    "bar 1:6 held at its end: bent, Timoshenko's deflection; twisted, Saint-Venant's rate, with the observed "
+    "order") {
   // nu = 0: the held end does not disturb the beam's stress.
   const double length = 6, E = 2, mu = 1;
   struct Errors {
@@ -121,7 +131,8 @@ TEST_CASE("bar 1:6 held at its end: bent, Timoshenko's deflection; twisted, Sain
     u.col(1) = bem.G() * twist;
     bem.factorise();
     bem.solve(u);
-    // The angle per length, by least squares, of what is a width away from both ends (Saint-Venant's principle).
+    // The angle per length, by least squares, of what is a width away from both ends (Saint-Venant's
+    // principle).
     double deflection = 0, count = 0;
     Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
     Eigen::Vector2d b = Eigen::Vector2d::Zero();
@@ -150,14 +161,19 @@ TEST_CASE("bar 1:6 held at its end: bent, Timoshenko's deflection; twisted, Sain
   double twisted[3];
   for (int k = 0; k < 3; ++k) {
     const int across = k + 2;
-    const SmoothSurface bar(test::cells_mesh({across, 6 * across, across}, 1.0 / across, [](int, int, int) { return true; }));
+    const SmoothSurface bar(
+        test::cells_mesh({across, 6 * across, across}, 1.0 / across, [](int, int, int) { return true; }));
     std::vector<std::uint8_t> held;
     for (const auto& t : bar.mesh().triangles)
-      held.push_back(bar.mesh().vertices[t[0]].y() + bar.mesh().vertices[t[1]].y() + bar.mesh().vertices[t[2]].y() < 1e-9);
+      held.push_back(bar.mesh().vertices[t[0]].y() + bar.mesh().vertices[t[1]].y() +
+                         bar.mesh().vertices[t[2]].y() <
+                     1e-9);
     twisted[k] = errors(detail::finish_solve_mesh(bar, detail::Remesher(bar, held, {}))).twisted;
   }
-  const double order[] = {std::log(twisted[0] / twisted[1]) / std::log(3.0 / 2), std::log(twisted[1] / twisted[2]) / std::log(4.0 / 3)};
-  MESSAGE("2, 3, 4 squares across: twisted ", twisted[0], ", ", twisted[1], ", ", twisted[2], ", order ", order[0], ", ", order[1]);
+  const double order[] = {std::log(twisted[0] / twisted[1]) / std::log(3.0 / 2),
+                          std::log(twisted[1] / twisted[2]) / std::log(4.0 / 3)};
+  MESSAGE("2, 3, 4 squares across: twisted ", twisted[0], ", ", twisted[1], ", ", twisted[2], ", order ",
+          order[0], ", ", order[1]);
   CHECK(order[0] > 2);  // u is quadratic, third order; linear u has at most second
   CHECK(order[1] > 2.5);
 }

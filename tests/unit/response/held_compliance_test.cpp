@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <palpate/response/held_compliance.hpp>
+#include <palpate/response/tick/held_compliance.hpp>
 
 #include "support/check.hpp"
 

@@ -20,7 +20,8 @@ SolveMesh solve_mesh(const MeshData<double>& body, double base, double vertices)
 }
 MeshData<double> cube_mesh() { return test::box_mesh(V(0.1, 0.1, 0.1), 8); }
 
-// Displacement of the free surface by a patch pressed 1 mm at x into the top of a cube of 100 mm, to first order, and its force.
+// Displacement of the free surface by a patch pressed 1 mm at x into the top of a cube of 100 mm, to first
+// order, and its force.
 struct Cube {
   explicit Cube(double vertices)
       : field(cube_mesh(), [](const V& p) { return p.y() < 1e-6; },

@@ -9,7 +9,8 @@ namespace {
 using namespace palpate;
 using V = Vec3<double>;
 
-// What a tick draws beyond small strain at `points` on a block of 60 x 30 x 60 patch radii, in parts of the way.
+// What a tick draws beyond small strain at `points` on a block of 60 x 30 x 60 patch radii, in parts of the
+// way.
 class HalfSpace {
  public:
   HalfSpace()
@@ -46,7 +47,8 @@ const HalfSpace& rubber() {
 }
 }  // namespace
 
-// Bounds: a quarter more than the largest that the fit leaves, 0.016. Terms that do not change with depth leave 0.027, askew 0.067.
+// Bounds: a quarter more than the largest that the fit leaves, 0.016. Terms that do not change with depth
+// leave 0.027, askew 0.067.
 TEST_CASE("around a disc on a half-space, to 1.2 radii deep: finite elements") {
   std::vector<V> right, left;
   for (const auto& t : test::half_space_truth) {

@@ -58,7 +58,7 @@ TEST_CASE("a ball where the body leans: it is pushed across in proportion to its
   for (const double depth : {0.5e-3, 2e-3}) {
     const SphereContact<double> in = on_flank(depth);
     const PressedSphere out = tick.solve(in);
-    CHECK(std::abs(out.across.dot(in.normal)) < 1e-12 * out.force);  // a rounding
+    CHECK(std::abs(out.across.dot(in.normal)) < 1e-12 * out.force);            // a rounding
     CHECK_RELATIVE(-out.on_body(in.normal).dot(in.normal), out.force, 1e-12);  // a rounding
     const double by_force = out.across.norm() / out.force / out.force;
     if (last > 0) CHECK_RELATIVE(by_force, last, 0.02);  // w is a mean over a contact that grows: 0.007 met

@@ -19,14 +19,18 @@ TEST_CASE("large block: flat punch and Hertz tend to the half-space, nu = 0, 0.3
     const ResponseField field = test::block_field(cube, 1e6, nu, 120);
     ResponseTick<1> tick(field, {.second_order = false});
     const double a = 1e-3, mu = 1e6 / (2 * (1 + nu)), d = 1e-5;
-    const ResponseContact<double> punch{.place = V(0.004, 0.1, 0.003), .normal = V::UnitY(), .radius = a, .displacement = V(0, -d, 0)};
+    const ResponseContact<double> punch{
+        .place = V(0.004, 0.1, 0.003), .normal = V::UnitY(), .radius = a, .displacement = V(0, -d, 0)};
     V F;
     tick.solve(&punch, 1, &F);
-    const double half_space = nu < 0.5 ? 4 * mu * a * std::log(3 - 4 * nu) / (1 - 2 * nu) * d : 8 * mu * a * d;
+    const double half_space =
+        nu < 0.5 ? 4 * mu * a * std::log(3 - 4 * nu) / (1 - 2 * nu) * d : 8 * mu * a * d;
     CHECK_RELATIVE(-F.y(), half_space, 0.05);  // the finite block: about a / size, 1-3 %
     CHECK(std::abs(F.x()) < 0.03 * std::abs(F.y()));
-    const auto ball = tick.solve(SphereContact<double>{.place = punch.place, .normal = V::UnitY(), .radius = 0.005, .depth = 1e-5});
-    CHECK_RELATIVE(ball.force, 4.0 / 3 * 1e6 / (1 - nu * nu) * std::sqrt(0.005) * std::pow(1e-5, 1.5), 0.03);  // ditto, a = 0.2 mm
+    const auto ball = tick.solve(
+        SphereContact<double>{.place = punch.place, .normal = V::UnitY(), .radius = 0.005, .depth = 1e-5});
+    CHECK_RELATIVE(ball.force, 4.0 / 3 * 1e6 / (1 - nu * nu) * std::sqrt(0.005) * std::pow(1e-5, 1.5),
+                   0.03);  // ditto, a = 0.2 mm
   }
 }
 
@@ -34,8 +38,15 @@ TEST_CASE("field: patch moves by d, held vertices rest, reciprocity, forces of t
   const ResponseField field = test::ellipsoid_field(0.5, 140);
   ResponseTick<2> tick(field);
   const V n2 = V(0.03 / 0.0036, 0.034641016151377546 / 0.0016, 0).normalized();
-  const ResponseContact<double> two[2] = {{.place = V(-0.02, 0.037712361663282534, 0), .normal = V(-0.02 / 0.0036, 0.037712361663282534 / 0.0016, 0).normalized(), .radius = 0.005, .displacement = V(0, -0.001, 0)},
-                                          {.place = V(0.03, 0.034641016151377546, 0), .normal = n2, .radius = 0.005, .displacement = -0.002 * n2}};
+  const ResponseContact<double> two[2] = {
+      {.place = V(-0.02, 0.037712361663282534, 0),
+       .normal = V(-0.02 / 0.0036, 0.037712361663282534 / 0.0016, 0).normalized(),
+       .radius = 0.005,
+       .displacement = V(0, -0.001, 0)},
+      {.place = V(0.03, 0.034641016151377546, 0),
+       .normal = n2,
+       .radius = 0.005,
+       .displacement = -0.002 * n2}};
   const std::vector<V> points = {two[0].place, two[1].place, V(0, -0.04, 0), V(0.06, 0, 0)};
   const ResponseDisplay display = ResponseDisplay(field, points);
   V F[2], again[2];
@@ -50,7 +61,8 @@ TEST_CASE("field: patch moves by d, held vertices rest, reciprocity, forces of t
   CHECK_ABSOLUTE(u[1], -0.001, 1e-9);
   CHECK_ABSOLUTE(u[4], -0.002 * n2.x(), 1e-9);
   CHECK((u[8] == 0.f && u[9] == 0.f && u[10] == 0.f));
-  // Reciprocity of the columns, before the system is made symmetric: discretisation error of 140 vertices, 6 %.
+  // Reciprocity of the columns, before the system is made symmetric: discretisation error of 140 vertices, 6
+  // %.
   const auto block = [&](std::size_t i, std::size_t j) {
     Mat3<double> w;
     for (std::size_t l = 0; l < 3; ++l) w.col(Eigen::Index(l)) = field.at(i, j, l);
@@ -60,7 +72,8 @@ TEST_CASE("field: patch moves by d, held vertices rest, reciprocity, forces of t
     const TouchNode& node = field.touch().nodes().at(k);
     bool any = false;
     for (std::size_t c = 0; c < 3; ++c)
-      any = any || (node.part[Eigen::Index(c)] > 0 && field.mesh().fixed_vertex[field.mesh().triangles[node.triangle][c]]);
+      any = any || (node.part[Eigen::Index(c)] > 0 &&
+                    field.mesh().fixed_vertex[field.mesh().triangles[node.triangle][c]]);
     return any;
   };
   double difference = 0, norm = 0;
@@ -81,7 +94,8 @@ TEST_CASE("field: patch moves by d, held vertices rest, reciprocity, forces of t
 }
 
 TEST_CASE("near field of second order: the patch moves as one, no jump at its edge or below its axis") {
-  const ResponseField field = test::ellipsoid_field(0.5, 60);  // nu = 1/2: the disc's own field is uniform within
+  const ResponseField field =
+      test::ellipsoid_field(0.5, 60);  // nu = 1/2: the disc's own field is uniform within
   detail::ContactSystem<1> contacts[2] = {{field, {}}, {field, {.second_order = false}}};
   const double a = 0.005;
   for (auto& system : contacts) {
@@ -106,7 +120,8 @@ TEST_CASE("near field of second order: the patch moves as one, no jump at its ed
     }
     return u;
   };
-  for (double s : {0.3, 0.7, 0.999}) CHECK((at(s, 0) - at(0, 0)).norm() < 1e-4 * c.d.norm());  // float, the disc's arctangent: 1e-5
+  for (double s : {0.3, 0.7, 0.999})
+    CHECK((at(s, 0) - at(0, 0)).norm() < 1e-4 * c.d.norm());  // float, the disc's arctangent: 1e-5
   // Beyond the edge as sqrt(s - 1): 2e-3 of d. When the terms of second order began there: half of d.
   for (double down : {0.0, 0.3, -0.3}) {
     const double rim = std::sqrt(1 - down * down);
@@ -115,11 +130,14 @@ TEST_CASE("near field of second order: the patch moves as one, no jump at its ed
   CHECK((at(1e-4, 1.5) - at(-1e-4, 1.5)).norm() < 1e-3 * c.d.norm());
 }
 
-TEST_CASE("places of loads: on the body, and no triangle between them folds over, where parts of the surface have reflex corners") {
+TEST_CASE(
+    "places of loads: on the body, and no triangle between them folds over, where parts of the surface have "
+    "reflex corners") {
   const test::ResponseBody bowl = test::response_bodies()[6];
   std::vector<std::uint8_t> held;
   const auto& v = bowl.mesh.vertices;
-  for (const auto& t : bowl.mesh.triangles) held.push_back((v[t[0]].y() + v[t[1]].y() + v[t[2]].y()) / 3 < bowl.held_below);
+  for (const auto& t : bowl.mesh.triangles)
+    held.push_back((v[t[0]].y() + v[t[1]].y() + v[t[2]].y()) / 3 < bowl.held_below);
   const SolveMesh solve = make_solve_mesh(SmoothSurface(bowl.mesh), held, {.vertices = 200});
   const TriangleBvh<double> body(bowl.mesh);
   const TouchMesh touch = detail::LoadPlaces(solve).touch_mesh();
@@ -146,8 +164,9 @@ TEST_CASE("bad input: reported at set-up, zero in a tick") {
   const ResponseField field(mesh, base, {.E = 1, .mesh = {.vertices = 40}, .threads = 1});
   ResponseTick<1> tick(field);
   const double bad = std::numeric_limits<double>::quiet_NaN();
-  for (const auto& contact : {ResponseContact<double>{.place = V(bad, 0, 0), .radius = 0.1}, ResponseContact<double>{.radius = -1},
-                              ResponseContact<double>{.normal = V(0, 0, 9), .radius = 0.1}}) {
+  for (const auto& contact :
+       {ResponseContact<double>{.place = V(bad, 0, 0), .radius = 0.1}, ResponseContact<double>{.radius = -1},
+        ResponseContact<double>{.normal = V(0, 0, 9), .radius = 0.1}}) {
     V F(1, 1, 1);
     tick.solve(&contact, 1, &F);
     CHECK(F == V::Zero());
@@ -160,8 +179,10 @@ TEST_CASE("bad input: reported at set-up, zero in a tick") {
 TEST_CASE("tick: no heap, no memory of what was before, coinciding contacts, surplus") {
   const ResponseField field = test::ellipsoid_field(0.3, 60);
   const V n = V::UnitY();
-  const ResponseContact<double> one{.place = V(0, 0.04, 0), .normal = n, .radius = 0.004, .displacement = V(0.0005, -0.002, 0)};
-  const ResponseContact<double> far{.place = V(0.06, 0, 0), .normal = V::UnitX(), .radius = 0.02, .displacement = V(-0.002, 0, 0)};
+  const ResponseContact<double> one{
+      .place = V(0, 0.04, 0), .normal = n, .radius = 0.004, .displacement = V(0.0005, -0.002, 0)};
+  const ResponseContact<double> far{
+      .place = V(0.06, 0, 0), .normal = V::UnitX(), .radius = 0.02, .displacement = V(-0.002, 0, 0)};
   const std::vector<V> points = {V(0.01, 0.039, 0.001), V(-0.05, 0.01, 0.01)};
   const ResponseDisplay display(field, points);
   ResponseTick<3> tick(field), fresh(field);
@@ -178,15 +199,16 @@ TEST_CASE("tick: no heap, no memory of what was before, coinciding contacts, sur
   CHECK(heap.allocations() == 0);
   CHECK(again[0] == F[0]);
   for (int i = 0; i < 6; ++i) CHECK(v[i] == u[i]);
-  // The same patch two and three times: the system stays definite, and together they push about as hard as one.
+  // The same patch two and three times: the system stays definite, and together they push about as hard as
+  // one.
   const ResponseContact<double> same[4] = {one, one, one, one};
   for (const std::size_t count : {2u, 3u}) {
     CHECK(fresh.solve(same, count, again) == Status::contact);
     V sum = V::Zero();
     for (std::size_t c = 0; c < count; ++c) sum += again[c];
     CHECK(is_finite(sum));
-    // Discs that know of each other by second moments only: 2 / (1 + 0.71), 3 / (1 + 2 * 0.71) of one; second order counts
-    // for each of them.
+    // Discs that know of each other by second moments only: 2 / (1 + 0.71), 3 / (1 + 2 * 0.71) of one; second
+    // order counts for each of them.
     CHECK(sum.norm() > 0.8 * F[0].norm());
     CHECK(sum.norm() < 1.5 * F[0].norm());
   }
@@ -199,7 +221,10 @@ TEST_CASE("saved and loaded: the same bits; bytes that are not a saved field are
   const std::vector<std::byte> bytes = save_response_field(field);
   const ResponseField loaded = load_response_field(bytes);
   CHECK(save_response_field(loaded) == bytes);
-  const ResponseContact<double> one{.place = V(0.01, 0.1, 0.02), .normal = V::UnitY(), .radius = 0.01, .displacement = V(0.0005, -0.002, 0)};
+  const ResponseContact<double> one{.place = V(0.01, 0.1, 0.02),
+                                    .normal = V::UnitY(),
+                                    .radius = 0.01,
+                                    .displacement = V(0.0005, -0.002, 0)};
   V F, again;
   ResponseTick<1>(field).solve(&one, 1, &F);
   ResponseTick<1>(loaded).solve(&one, 1, &again);

@@ -58,7 +58,8 @@ TEST_CASE(
         const Contact both[2] = {first, pressed(0.036 + radius, 0.004, V(part * way))};
         return answer(both, 2);
       };
-      // Of d, and of the force for it. Sums in float: 4e-7 met. A contact that held its place at once would be at 0.1.
+      // Of d, and of the force for it. Sums in float: 4e-7 met. A contact that held its place at once would
+      // be at 0.1.
       CHECK(with(1e-9).apart(alone, d) < 1e-5);
       const auto largest_step = [&](int n) {
         double step = 0;
@@ -117,6 +118,7 @@ TEST_CASE(
   };
   const V seen(0.5 * (slope(0).dot(c.t1()) + slope(1).dot(c.t2())), slope(0).dot(c.m), slope(1).dot(c.m));
   MESSAGE("spread and slopes: by the loads ", bent.transpose(), ", seen ", seen.transpose());
-  // The columns' slopes are fitted to neighbours an edge away, the field's taken over one: 8 % apart on this mesh of 180.
+  // The columns' slopes are fitted to neighbours an edge away, the field's taken over one: 8 % apart on this
+  // mesh of 180.
   CHECK((bent - seen).norm() < 0.15 * seen.norm());
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <palpate/response/solve_mesh.hpp>
+#include <palpate/response/setup/element_mesh.hpp>
 
 #include "support/check.hpp"
 #include "support/response_bodies.hpp"
@@ -48,16 +48,16 @@ TEST_CASE("edges: short on a fin, along creases and at the rim; as many vertices
   const MeshData<double> body =
       test::cells_mesh({8, 12, 8}, 0.01, [](int i, int j, int) { return j < 8 || i == 4; });
   const SolveMesh m = solve_mesh(body, 300);
-  const double fin = mean_edge(m, [](const V&x) { return x.y() > 0.09 && x.y() < 0.11; }),
+  const double fin = mean_edge(m, [](const V& x) { return x.y() > 0.09 && x.y() < 0.11; }),
                face = mean_edge(
                    m,
-                   [](const V&x) { return std::abs(x.z()) < 1e-9 && (x - V(0.04, 0.04, 0)).norm() < 0.02; }),
+                   [](const V& x) { return std::abs(x.z()) < 1e-9 && (x - V(0.04, 0.04, 0)).norm() < 0.02; }),
                edge =
                    mean_edge(m,
-                             [](const V&x) {
+                             [](const V& x) {
                                return std::abs(x.z()) < 1e-9 && x.x() < 0.005 && x.y() > 0.03 && x.y() < 0.07;
                              }),
-               rim = mean_edge(m, [](const V&x) { return x.y() > 0 && x.y() < 0.005; });
+               rim = mean_edge(m, [](const V& x) { return x.y() > 0 && x.y() < 0.005; });
   MESSAGE(m.vertices.size(), " vertices; mean edge [mm]: fin ", 1e3 * fin, ", face ", 1e3 * face, ", crease ",
           1e3 * edge, ", rim ", 1e3 * rim);
   CHECK(m.vertices.size() < 1.15 * 300);  // a tenth more is usual: remesh.hpp

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <palpate/response/turned_field.hpp>
+#include <palpate/response/tick/turned_field.hpp>
 
 #include "support/check.hpp"
 #include "support/response_meshes.hpp"
@@ -59,7 +59,8 @@ TEST_CASE("a body that turns as a whole moves along a circle; on edges and corne
         CHECK(second == V::Zero());
         continue;
       }
-      // Third order is angle^3 / 6 of the lever; of second order 2e-4 is met, by the penalty (rotation_table.hpp).
+      // Third order is angle^3 / 6 of the lever; of second order 2e-4 is met, by the penalty
+      // (rotation_table.hpp).
       CHECK((u + second - (turn * x - x)).norm() <
             (angle * angle * angle / 6 + 0.001 * angle * angle / 2) * x.norm() + 1e-9);
       CHECK((u - (turn * x - x)).norm() > 0.99 * angle * angle / 2 * axis.cross(V(axis.cross(x))).norm());

@@ -43,7 +43,8 @@ TEST_CASE("a small patch: the half-space's moments of tilt and of twist") {
     const V tilt = solved(field, on_top(0, a, V::Zero(), V(0, 0, angle)), false).torque,
             twist = solved(field, on_top(0, a, V::Zero(), V(0, angle, 0)), false).torque;
     MESSAGE("nu = ", nu, ": tilt ", tilt.z() / unit, ", twist ", twist.y() / unit);
-    // Stuck below: by nu, 1 % more than a frictionless disc at 0.3. The body's own part goes with (a / size)^3.
+    // Stuck below: by nu, 1 % more than a frictionless disc at 0.3. The body's own part goes with (a /
+    // size)^3.
     CHECK(std::abs(tilt.z() / unit - 8 / (3 * (1 - nu))) < 0.012 * 8 / (3 * (1 - nu)));
     CHECK(std::abs(twist.y() / unit - 16. / 3) < 0.005 * 16. / 3);
     // Nothing by symmetry, which 150 vertices have not.
@@ -92,14 +93,15 @@ TEST_CASE("pressed and tilted next to an edge: finite elements") {
   CHECK(std::sqrt(error / norm) <
         0.06);  // our goal at the deepest; of the free surface alone, on a small mesh
   CHECK((F - force).norm() < 0.03 * force.norm());
-  // The goal for forces; 1 % met, where the reference is too stiff by more. The rest vanishes by symmetry, which the mesh has not.
+  // The goal for forces; 1 % met, where the reference is too stiff by more. The rest vanishes by symmetry,
+  // which the mesh has not.
   CHECK(std::abs(T.z() - test::truth_turned_torque) < 0.03 * std::abs(test::truth_turned_torque));
   CHECK(T.head<2>().norm() < 0.01 * std::abs(T.z()));
 }
 
 TEST_CASE("twisted on a bent surface: finite elements") {
-  // Case twist of bench/truth/make_reference.cpp at 0.05 rad: an ellipsoid of 50, 35, 30 mm, 40 degrees of its parameter from the top. A plane
-  // has 16 % more.
+  // Case twist of bench/truth/make_reference.cpp at 0.05 rad: an ellipsoid of 50, 35, 30 mm, 40 degrees of
+  // its parameter from the top. A plane has 16 % more.
   const double angle = 40 * std::numbers::pi / 180;
   const V axes(0.05, 0.035, 0.03), place(axes.x() * std::sin(angle), axes.y() * std::cos(angle), 0),
       normal = place.cwiseQuotient(axes.cwiseProduct(axes)).normalized();
@@ -123,8 +125,8 @@ TEST_CASE("what tilts and twists do, and what forces do to them, is the same: re
         largest = (std::max)(largest, std::abs(turned.force[way] * d - moved.torque[axis] * angle) / all);
       }
     MESSAGE("radius ", radius, ": ", largest);
-    // A patch that is wide for its mesh is held by five loads, which move it, too, but are left out where w twists it, and which know
-    // the stuck disc's own loads in the mean only.
+    // A patch that is wide for its mesh is held by five loads, which move it, too, but are left out where w
+    // twists it, and which know the stuck disc's own loads in the mean only.
     CHECK(largest < (radius < 0.01 ? 0.001 : 0.04));
   }
 }

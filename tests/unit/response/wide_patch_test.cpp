@@ -78,16 +78,19 @@ TEST_CASE("force and field go gradually with the radius, narrow to wide") {
   CHECK(fine < 0.3 * coarse);  // a quarter; a jump would stay
 }
 
-TEST_CASE("a small patch pushed sideways into a wall that bends and turns beneath it: linear finite elements") {
+TEST_CASE(
+    "a small patch pushed sideways into a wall that bends and turns beneath it: linear finite elements") {
   MeshData<double> mesh = test::box_mesh(V(0.02, 0.06, 0.08), 12);
   for (auto& p : mesh.vertices) p -= V(0.01, 0, 0.04);
   const ResponseField wall(mesh, [](const V& p) { return p.y() <= 1e-6; },
                            {.E = 1e6, .nu = 0.49, .mesh = {.vertices = 220}, .threads = 1});
-  const Contact push{.place = V(0.01, 0.04, 0), .normal = V::UnitX(), .radius = 0.005, .displacement = V(-1e-3, 0, 0)};
+  const Contact push{
+      .place = V(0.01, 0.04, 0), .normal = V::UnitX(), .radius = 0.005, .displacement = V(-1e-3, 0, 0)};
   ResponseTick<1> tick(wall, {.second_order = false});
   V F;
   tick.solve(&push, 1, &F);
   const V exact(-2.67347, -1.8845, 0);  // Taylor-Hood tetrahedra; 1.2 % too high where it was compared
   MESSAGE("force ", F.transpose(), ", off by ", (F - exact).norm() / exact.norm());
-  CHECK((F - exact).norm() < 0.02 * exact.norm());  // held in the mean only: 4 %, with 200 to 600 vertices alike
+  CHECK((F - exact).norm() <
+        0.02 * exact.norm());  // held in the mean only: 4 %, with 200 to 600 vertices alike
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include <palpate/force/linear.hpp>
-#include <palpate/friction/coulomb.hpp>
+#include <palpate/geometry/sphere.hpp>
+#include <palpate/law/force/linear.hpp>
+#include <palpate/law/friction/coulomb.hpp>
 #include <palpate/solver/contact_solver.hpp>
-#include <palpate/surface/sphere.hpp>
 
 #include "support/check.hpp"
 
@@ -36,8 +36,11 @@ using Solver = ContactSolver<Body, Law, Friction, Contacts>;
 
 template <class Friction, class Contacts>
 double force_at_1mm(typename Contacts::template Tool<double> tool, Contacts contacts) {
-  Solver<Friction, Contacts> solver(
-      {.object = Body({.radius = 0.03}), .tool = tool, .force = Law({100}), .friction = {}, .contacts = contacts});
+  Solver<Friction, Contacts> solver({.object = Body({.radius = 0.03}),
+                                     .tool = tool,
+                                     .force = Law({100}),
+                                     .friction = {},
+                                     .contacts = contacts});
   Pose<double> X;
   X.translation = Vec3<double>(0, 0.029, 0);
   return solver.tick(X).wrench.force.y();

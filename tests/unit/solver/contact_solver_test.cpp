@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include <palpate/force/damped.hpp>
-#include <palpate/force/duffing.hpp>
-#include <palpate/friction/coulomb.hpp>
-#include <palpate/friction/none.hpp>
-#include <palpate/friction/power_law.hpp>
+#include <palpate/geometry/box.hpp>
+#include <palpate/geometry/ellipsoid.hpp>
+#include <palpate/geometry/sphere.hpp>
+#include <palpate/geometry/superellipsoid.hpp>
+#include <palpate/law/force/damped.hpp>
+#include <palpate/law/force/duffing.hpp>
+#include <palpate/law/friction/coulomb.hpp>
+#include <palpate/law/friction/none.hpp>
+#include <palpate/law/friction/power_law.hpp>
 #include <palpate/solver/contact_solver.hpp>
-#include <palpate/surface/box.hpp>
-#include <palpate/surface/ellipsoid.hpp>
-#include <palpate/surface/sphere.hpp>
-#include <palpate/surface/superellipsoid.hpp>
 
 #include <doctest/doctest.h>
 
@@ -40,7 +40,8 @@ Pose<double> at(double x, double y, double z) {
 ToolPoints<double> face(int n, double spacing, double contact_area) {
   std::vector<V> points;
   for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j) points.emplace_back(spacing * (i - 0.5 * (n - 1)), 0, spacing * (j - 0.5 * (n - 1)));
+    for (int j = 0; j < n; ++j)
+      points.emplace_back(spacing * (i - 0.5 * (n - 1)), 0, spacing * (j - 0.5 * (n - 1)));
   return ToolPoints<double>(points, std::vector<double>(points.size(), spacing * spacing),
                             {.contact_area = contact_area, .centre_of_mass = V(0, 0.03, 0)});
 }
@@ -54,7 +55,8 @@ struct PointByPoint {
   bool separated(const V& c, double r) const noexcept { return body.separated(c, r); }
   double reach() const noexcept { return body.reach(); }
 };
-static_assert(HasPenetrationLanes<Superellipsoid<double>, 2 * lane_count> && !HasPenetrationLanes<PointByPoint>);
+static_assert(HasPenetrationLanes<Superellipsoid<double>, 2 * lane_count> &&
+              !HasPenetrationLanes<PointByPoint>);
 
 }  // namespace
 
@@ -69,7 +71,8 @@ TEST_CASE_TEMPLATE("a point pressed in: F equals equation (3)", S, float, double
     const long double D = static_cast<long double>(S(0.02)) - static_cast<long double>(X.translation.y());
     const long double F = static_cast<long double>(S(40)) * D + static_cast<long double>(S(3e8)) * D * D * D;
     const auto result = solver.tick(X);
-    CHECK_RELATIVE(result.wrench.force.y(), F, sizeof(S) == 8 ? 1e-14L : 1e-6L);  // asked for by the project's goals
+    CHECK_RELATIVE(result.wrench.force.y(), F,
+                   sizeof(S) == 8 ? 1e-14L : 1e-6L);  // asked for by the project's goals
     CHECK(result.wrench.force.x() == 0);
     CHECK(result.wrench.force.z() == 0);
     CHECK(result.status == Status::contact);
@@ -87,7 +90,8 @@ TEST_CASE("out of reach: zero wrench, no contact, no region") {
 }
 
 TEST_CASE("a bad pose in mid-run: zero wrench, a status bit, recovery at the next good pose") {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(),
+                   inf = std::numeric_limits<double>::infinity();
   ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>> solver(
       {.object = egg, .tool = {}, .force = law, .friction = dry});
   const Pose<double> good = at(0.001, 0.038, 0);
@@ -145,11 +149,14 @@ TEST_CASE("region: force and torque equal the sum over the points, and do not de
   CHECK((b.wrench.torque - torque).norm() <= 1e-13 * torque.norm());
   CHECK(one.contacts().size() == 1);
   CHECK(one.contacts()[0].points == static_cast<std::uint32_t>(touching));
-  CHECK(many.contacts().size() == 8);  // every point is a region of its own at that distance: more than there is room for
+  CHECK(many.contacts().size() ==
+        8);  // every point is a region of its own at that distance: more than there is room for
   CHECK(has(b.status, Status::region_overflow));
 }
 
-TEST_CASE("two leaves at once: the same force as point by point, for any number of leaves, the last one full or not") {
+TEST_CASE(
+    "two leaves at once: the same force as point by point, for any number of leaves, the last one full or "
+    "not") {
   const Superellipsoid<double> pill({.axes = V(0.06, 0.04, 0.04), .e1 = 0.3, .e2 = 0.7});
   for (const int n : {1, 3, 4, 5, 6, 7, 8, 9, 12}) {  // 1 to 9 leaves
     const ToolPoints<double> tool = face(n, 1e-3, 4e-5);
@@ -178,7 +185,8 @@ TEST_CASE("two leaves at once: the same force as point by point, for any number 
   }
 }
 
-TEST_CASE("equivalent contact: the law at its depth gives the region's force, and its origin is on the surface") {
+TEST_CASE(
+    "equivalent contact: the law at its depth gives the region's force, and its origin is on the surface") {
   ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<>> solver(
       {.object = egg, .tool = face(11, 1e-3, 1e-4), .force = law, .friction = dry});
   for (int i = 0; i <= 200; ++i) (void)solver.tick(at(-0.005 + 5e-5 * i, 0.0385, 0));
@@ -196,7 +204,11 @@ TEST_CASE("one point of the whole nominal area is the single point") {
   ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>> point(
       {.object = egg, .tool = {V::Zero(), V(0, 0.03, 0)}, .force = law, .friction = dry});
   ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<2>> regions(
-      {.object = egg, .tool = face(1, 1e-3, 1e-6), .force = law, .friction = dry, .contacts = {.distance = 1e-3}});
+      {.object = egg,
+       .tool = face(1, 1e-3, 1e-6),
+       .force = law,
+       .friction = dry,
+       .contacts = {.distance = 1e-3}});
   for (int i = 0; i < 300; ++i) {
     const Pose<double> X = at(1e-5 * i, 0.0395 - 1e-5 * i, 2e-5 * i);
     const auto a = point.tick(X), b = regions.tick(X);
@@ -208,8 +220,12 @@ TEST_CASE("one point of the whole nominal area is the single point") {
 
 TEST_CASE("Fig. 10: signs of the force while a tool moves along the ellipsoid in +x") {
   ContactSolver<Ellipsoid<double>, DuffingForce<double>, PowerLawFriction<double>> solver(
-      {.object = egg, .tool = {}, .force = law, .friction = PowerLawFriction<double>({.K = 0.562, .beta = 0.75, .mu_dynamic = 0.3})});
-  double highest = 0, x_of_highest = 1, first_normal_x = 0, last_normal_x = 0, first_friction_y = 0, last_friction_y = 0;
+      {.object = egg,
+       .tool = {},
+       .force = law,
+       .friction = PowerLawFriction<double>({.K = 0.562, .beta = 0.75, .mu_dynamic = 0.3})});
+  double highest = 0, x_of_highest = 1, first_normal_x = 0, last_normal_x = 0, first_friction_y = 0,
+         last_friction_y = 0;
   for (int i = 0; i <= 4000; ++i) {
     const double x = -0.03 + 1.5e-5 * i, z = 1e-6 * i;
     const V top = egg.raycast(V(x, 1, z), V(0, -1, 0)).position;
@@ -252,7 +268,8 @@ TEST_CASE("without friction no closed path gains or loses energy") {
       before = now;
       last = X;
     }
-    // Trapezoid rule on a force with kinks: its error is of the order (1/ticks)^2 per kink; 1e-4 is far above it.
+    // Trapezoid rule on a force with kinks: its error is of the order (1/ticks)^2 per kink; 1e-4 is far above
+    // it.
     CHECK(std::abs(work) <= 1e-4 * scale);
   }
 }
@@ -291,16 +308,19 @@ TEST_CASE("regions that split and merge keep the tangential force") {
   }
   CHECK(splits >= 1);
   CHECK(merges >= 1);
-  // One tick moves 2 um: the friction may change by the law's stiffness times that, and by mu times the normal change.
+  // One tick moves 2 um: the friction may change by the law's stiffness times that, and by mu times the
+  // normal change.
   CHECK(largest <= 2 * law.stiffness(2e-3) * 2.7e-6);
 }
 
 TEST_CASE("a rate-dependent law uses dt, and only dt that makes sense") {
   const DampedForce<DuffingForce<double>> damped(law, {.damping = 1.0});
-  ContactSolver<Box<double>, DampedForce<DuffingForce<double>>> solver({.object = block, .tool = {}, .force = damped});
+  ContactSolver<Box<double>, DampedForce<DuffingForce<double>>> solver(
+      {.object = block, .tool = {}, .force = damped});
   (void)solver.tick(at(0, 0.019, 0), 1e-3);
   const auto pushed = solver.tick(at(0, 0.018, 0), 1e-3);  // 1 m/s inwards at 2 mm
-  CHECK_RELATIVE(pushed.wrench.force.y(), damped.force(2e-3, 1.0), 1e-12);  // depth from 0.02 - y: 1e-14 relative
+  CHECK_RELATIVE(pushed.wrench.force.y(), damped.force(2e-3, 1.0),
+                 1e-12);  // depth from 0.02 - y: 1e-14 relative
   CHECK(pushed.wrench.force.y() > law.force(2e-3));
   for (const double dt : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
     const auto result = solver.tick(at(0, 0.0175, 0), dt);
@@ -310,8 +330,9 @@ TEST_CASE("a rate-dependent law uses dt, and only dt that makes sense") {
 }
 
 TEST_CASE("force at the mass centre: the paper's form has no torque") {
-  ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<>, AtMassCentre> paper(
-      {.object = egg, .tool = face(5, 1e-3, 1e-5), .force = law, .friction = dry});
+  ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<>,
+                AtMassCentre>
+      paper({.object = egg, .tool = face(5, 1e-3, 1e-5), .force = law, .friction = dry});
   ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<>> full(
       {.object = egg, .tool = face(5, 1e-3, 1e-5), .force = law, .friction = dry});
   for (int i = 0; i < 100; ++i) {
@@ -326,11 +347,16 @@ TEST_CASE("force at the mass centre: the paper's form has no torque") {
 TEST_CASE("the same poses give the same bits") {
   const auto run = [] {
     ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4>> solver(
-        {.object = egg, .tool = face(9, 1e-3, 4e-5), .force = law, .friction = dry, .contacts = {.distance = 1.5e-3}});
+        {.object = egg,
+         .tool = face(9, 1e-3, 4e-5),
+         .force = law,
+         .friction = dry,
+         .contacts = {.distance = 1.5e-3}});
     std::vector<double> all;
     for (int i = 0; i < 500; ++i) {
       const auto w = solver.tick(at(2e-5 * i, 0.0385 + 1e-3 * std::sin(0.05 * i), 1e-5 * i)).wrench;
-      all.insert(all.end(), {w.force.x(), w.force.y(), w.force.z(), w.torque.x(), w.torque.y(), w.torque.z()});
+      all.insert(all.end(),
+                 {w.force.x(), w.force.y(), w.force.z(), w.torque.x(), w.torque.y(), w.torque.z()});
     }
     return all;
   };
@@ -426,6 +452,7 @@ TEST_CASE("float follows double") {
     worst = (std::max)(worst, (narrow[i] - wide[i]).norm());
     largest = (std::max)(largest, wide[i].norm());
   }
-  // 40 mm in float are known to 2.4e-9 m; times the stiffness at 2 mm, 3.6 kN/m, on some 49 points of 1/40 share: 1e-5 N.
+  // 40 mm in float are known to 2.4e-9 m; times the stiffness at 2 mm, 3.6 kN/m, on some 49 points of 1/40
+  // share: 1e-5 N.
   CHECK(worst <= 3e-5 * (std::max)(largest, 1.0));
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include <palpate/beam/regions.hpp>
-#include <palpate/force/duffing.hpp>
-#include <palpate/friction/coulomb.hpp>
+#include <palpate/geometry/ellipsoid.hpp>
+#include <palpate/geometry/extremal_points.hpp>
+#include <palpate/law/force/duffing.hpp>
+#include <palpate/law/friction/coulomb.hpp>
+#include <palpate/luo_xiao/beam/regions.hpp>
 #include <palpate/solver/contact_solver.hpp>
-#include <palpate/surface/ellipsoid.hpp>
-#include <palpate/surface/extremal_points.hpp>
 
 #include <doctest/doctest.h>
 
@@ -19,9 +19,10 @@ namespace {
 const Ellipsoid<double> egg({.axes = V(0.06, 0.04, 0.04)});
 using Beams = Skeleton<double>;
 template <class Rule>
-using Coupled = ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4>, AtContact,
-                              RegionSkeletons<Beams, Rule>>;
-using Independent = ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4>>;
+using Coupled = ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4>,
+                              AtContact, RegionSkeletons<Beams, Rule>>;
+using Independent =
+    ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4>>;
 
 /// Two pins 30 mm apart, each of nine points.
 ToolPoints<double> compass() {
@@ -35,14 +36,15 @@ template <class Rule>
 Coupled<Rule> coupled() {
   std::vector<V> places;
   for (const auto& p : extremal_points(egg)) places.push_back(p.position);
-  return Coupled<Rule>({.object = egg,
-                        .tool = compass(),
-                        .force = DuffingForce<double>({.c1 = 40, .c3 = 3e8}),
-                        .friction = CoulombFriction<double>({.mu_static = 0.5, .mu_dynamic = 0.3}),
-                        .contacts = {.distance = 1e-3},
-                        .coupling = RegionSkeletons<Beams, Rule>(
-                            Beams(places, EulerBernoulli<double>(IsotropicElasticity<double>({.E = 1e5, .nu = 0.5})),
-                                  VolumePreserving<double>({.volume = egg.volume()})))});
+  return Coupled<Rule>(
+      {.object = egg,
+       .tool = compass(),
+       .force = DuffingForce<double>({.c1 = 40, .c3 = 3e8}),
+       .friction = CoulombFriction<double>({.mu_static = 0.5, .mu_dynamic = 0.3}),
+       .contacts = {.distance = 1e-3},
+       .coupling = RegionSkeletons<Beams, Rule>(
+           Beams(places, EulerBernoulli<double>(IsotropicElasticity<double>({.E = 1e5, .nu = 0.5})),
+                 VolumePreserving<double>({.volume = egg.volume()})))});
 }
 Independent independent() {
   return Independent({.object = egg,
@@ -60,7 +62,8 @@ Pose<double> leaning(int i) {
   return X;
 }
 
-/// The largest change of the wrench's force in a tick while the second pin comes down, and the regions at the end.
+/// The largest change of the wrench's force in a tick while the second pin comes down, and the regions at the
+/// end.
 template <class Solver>
 std::pair<double, std::size_t> land(Solver solver, double& at_landing) {
   V before = solver.tick(leaning(0)).wrench.force;
@@ -82,7 +85,8 @@ std::pair<double, std::size_t> land(Solver solver, double& at_landing) {
 TEST_CASE("section VI: with one region the coupling changes nothing, with two each feels the other") {
   auto with = coupled<CoupledRegions>();
   auto without = independent();
-  for (const int i : {0, 100, 200}) CHECK(with.tick(leaning(i)).wrench.force == without.tick(leaning(i)).wrench.force);
+  for (const int i : {0, 100, 200})
+    CHECK(with.tick(leaning(i)).wrench.force == without.tick(leaning(i)).wrench.force);
   for (int i = 201; i <= 5000; ++i) {
     (void)with.tick(leaning(i));
     (void)without.tick(leaning(i));
@@ -104,7 +108,8 @@ TEST_CASE("section VI: a second pin lands without a jump when coupled, and with 
   CHECK(a.second == 2);
   CHECK(b.second == 2);
   CHECK(c.second == 2);
-  MESSAGE("force step in the tick of landing: coupled ", smooth, " N, superposed ", printed, " N, independent ", alone, " N");
+  MESSAGE("force step in the tick of landing: coupled ", smooth, " N, superposed ", printed,
+          " N, independent ", alone, " N");
   CHECK(smooth <= 1.1 * alone);  // the coupling starts from zero: landing feels as it does without it
   CHECK(printed > 10 * smooth);  // what the default avoids
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <support/no_heap.hpp>
 
-#include <Eigen/Core>
 #include <doctest/doctest.h>
+#include <Eigen/Core>
 
 #include <cstdlib>
 #include <memory>
@@ -25,7 +25,9 @@ TEST_CASE("the allocation counter sees new, malloc and Eigen's own allocator") {
   CHECK(heap.allocations() == 1);
 
   heap = HeapCount();
-  struct alignas(64) Wide { double x[8]; };
+  struct alignas(64) Wide {
+    double x[8];
+  };
   Wide* volatile wide = new Wide();
   CHECK(heap.allocations() == 1);
   delete wide;

@@ -74,13 +74,13 @@ typedef struct {
 #define HD_SCHEDULER_FULL 0x0501
 
 /* State; lengths in mm, velocities in mm/s, angles in rad */
-#define HD_CURRENT_BUTTONS 0x2000          /* int, bit mask */
-#define HD_CURRENT_SAFETY_SWITCH 0x2001    /* boolean */
-#define HD_CURRENT_INKWELL_SWITCH 0x2002   /* boolean, 0 when docked */
-#define HD_CURRENT_POSITION 0x2050         /* 3 */
-#define HD_CURRENT_VELOCITY 0x2051         /* 3, smoothed */
-#define HD_CURRENT_TRANSFORM 0x2052        /* 16, column-major, translation in 12..14 */
-#define HD_LAST_POSITION 0x2250            /* of the frame before */
+#define HD_CURRENT_BUTTONS 0x2000        /* int, bit mask */
+#define HD_CURRENT_SAFETY_SWITCH 0x2001  /* boolean */
+#define HD_CURRENT_INKWELL_SWITCH 0x2002 /* boolean, 0 when docked */
+#define HD_CURRENT_POSITION 0x2050       /* 3 */
+#define HD_CURRENT_VELOCITY 0x2051       /* 3, smoothed */
+#define HD_CURRENT_TRANSFORM 0x2052      /* 16, column-major, translation in 12..14 */
+#define HD_LAST_POSITION 0x2250          /* of the frame before */
 #define HD_LAST_VELOCITY 0x2251
 #define HD_LAST_TRANSFORM 0x2252
 
@@ -92,21 +92,21 @@ typedef struct {
 #define HD_DEVICE_SERIAL_NUMBER 0x2504
 
 /* What the device can do */
-#define HD_MAX_WORKSPACE_DIMENSIONS 0x2550    /* 6: minimum xyz, maximum xyz [mm] */
-#define HD_USABLE_WORKSPACE_DIMENSIONS 0x2551 /* 6 */
-#define HD_INPUT_DOF 0x2553                   /* int */
-#define HD_OUTPUT_DOF 0x2554                  /* int */
-#define HD_CALIBRATION_STYLE 0x2555           /* int, bit mask of the styles below */
-#define HD_UPDATE_RATE 0x2600                 /* Hz */
-#define HD_INSTANTANEOUS_UPDATE_RATE 0x2601   /* Hz */
-#define HD_NOMINAL_MAX_STIFFNESS 0x2602       /* N/mm */
-#define HD_NOMINAL_MAX_DAMPING 0x2609         /* N s/mm */
-#define HD_NOMINAL_MAX_FORCE 0x2603           /* N, motors cool */
+#define HD_MAX_WORKSPACE_DIMENSIONS 0x2550     /* 6: minimum xyz, maximum xyz [mm] */
+#define HD_USABLE_WORKSPACE_DIMENSIONS 0x2551  /* 6 */
+#define HD_INPUT_DOF 0x2553                    /* int */
+#define HD_OUTPUT_DOF 0x2554                   /* int */
+#define HD_CALIBRATION_STYLE 0x2555            /* int, bit mask of the styles below */
+#define HD_UPDATE_RATE 0x2600                  /* Hz */
+#define HD_INSTANTANEOUS_UPDATE_RATE 0x2601    /* Hz */
+#define HD_NOMINAL_MAX_STIFFNESS 0x2602        /* N/mm */
+#define HD_NOMINAL_MAX_DAMPING 0x2609          /* N s/mm */
+#define HD_NOMINAL_MAX_FORCE 0x2603            /* N, motors cool */
 #define HD_NOMINAL_MAX_CONTINUOUS_FORCE 0x2604 /* N */
-#define HD_MOTOR_TEMPERATURE 0x2605           /* 3, 0 cold to 1 hot */
-#define HD_SOFTWARE_VELOCITY_LIMIT 0x2606     /* mm/s; also a capability */
+#define HD_MOTOR_TEMPERATURE 0x2605            /* 3, 0 cold to 1 hot */
+#define HD_SOFTWARE_VELOCITY_LIMIT 0x2606      /* mm/s; also a capability */
 #define HD_SOFTWARE_FORCE_IMPULSE_LIMIT 0x2607 /* N/ms; also a capability */
-#define HD_FORCE_RAMPING_RATE 0x2608          /* N/s */
+#define HD_FORCE_RAMPING_RATE 0x2608           /* N/s */
 
 /* Output */
 #define HD_CURRENT_FORCE 0x2700  /* 3, N */
@@ -167,7 +167,8 @@ HDAPI void HDAPIENTRY hdUpdateCalibration(HDenum style);
 HDAPI void HDAPIENTRY hdStartScheduler(void);
 HDAPI void HDAPIENTRY hdStopScheduler(void);
 HDAPI void HDAPIENTRY hdSetSchedulerRate(HDulong nRate);
-HDAPI void HDAPIENTRY hdScheduleSynchronous(HDSchedulerCallback pCallback, void* pUserData, HDushort nPriority);
+HDAPI void HDAPIENTRY hdScheduleSynchronous(HDSchedulerCallback pCallback, void* pUserData,
+                                            HDushort nPriority);
 HDAPI HDSchedulerHandle HDAPIENTRY hdScheduleAsynchronous(HDSchedulerCallback pCallback, void* pUserData,
                                                           HDushort nPriority);
 HDAPI void HDAPIENTRY hdUnschedule(HDSchedulerHandle hHandle);

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file Contact topology: how many contact regions a scene can have (sections II and III).
+///
+/// | shipped          | regions                                | tool          | use it when                                     |
+/// |------------------|----------------------------------------|---------------|-------------------------------------------------|
+/// | `SinglePoint`    | 1, of one point                        | `PointTool`   | a stylus tip; the cheapest                      |
+/// | `SingleRegion`   | 1, all points that touch               | `ToolPoints`  | a tool that can touch in one place only         |
+/// | `Regions<N>`     | up to N, clustered by the distance r   | `ToolPoints`  | the general case                                |
+///
+/// With regions, the surplus over N joins the nearest region and `Status::region_overflow` is set. The normal
+/// force is a sum over points and does not depend on the clustering; only friction does.
+
+#include <palpate/contact/mass_sharing.hpp>
+#include <palpate/detection/tool_points.hpp>
+
+#include <cstddef>
+
+namespace palpate {
+
+struct SinglePoint {
+  static constexpr std::size_t max_regions = 1;
+  using Sharing = AreaSharing;
+  template <Real S>
+  using Tool = PointTool<S>;
+};
+
+template <MassSharing W = AreaSharing>
+struct SingleRegion {
+  static constexpr std::size_t max_regions = 1;
+  using Sharing = W;
+  template <Real S>
+  using Tool = ToolPoints<S>;
+};
+
+/// Regions are the connected components of the graph that joins touching points nearer than `distance`.
+template <std::size_t N, MassSharing W = AreaSharing>
+struct Regions {
+  static_assert(N >= 1 && N <= 64, "palpate::Regions<N>: 1 <= N <= 64");
+  static constexpr std::size_t max_regions = N;
+  using Sharing = W;
+  template <Real S>
+  using Tool = ToolPoints<S>;
+
+  double distance;  ///< threshold r [m] of section II: points strictly nearer than r belong together
+};
+
+template <class T>
+concept Topology = requires {
+  { T::max_regions } -> std::convertible_to<std::size_t>;
+  typename T::Sharing;
+  typename T::template Tool<double>;
+} && MassSharing<typename T::Sharing>;
+
+/// True for topologies that cluster (`Regions<N>`).
+template <class T>
+concept ClusteredTopology = Topology<T> && requires(const T& t) {
+  { t.distance } -> std::convertible_to<double>;
+};
+
+static_assert(Topology<SinglePoint> && Topology<SingleRegion<>> && ClusteredTopology<Regions<4>>);
+
+}  // namespace palpate

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Depth of points inside a superellipsoid near its surface, many at once.
+
+#include <palpate/core/absent.hpp>
+#include <palpate/geometry/concept.hpp>
+#include <palpate/geometry/detail/superellipsoid_newton.hpp>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+namespace palpate::detail {
+
+/// Depth and normal of N points inside a superellipsoid from SuperellipsoidNewton. In double the first steps
+/// are in float: they only give the place where the others start. Lengths in units of about a_min. Against
+/// long double, 104,000 points down to 0.9 of the reach, a third of them on or next to planes of symmetry,
+/// e1, e2 in [0.1, 1], axes up to 1 : 7: depth within 1.9 epsilon a_max, normal within 83 epsilon.
+template <Real S>
+class SuperellipsoidNear {
+ public:
+  template <int N>
+  using Numbers = std::array<S, static_cast<std::size_t>(N)>;
+  template <int N>
+  using Axes = std::array<Numbers<N>, 3>;
+
+  /// Are the first steps in float?
+  template <int N>
+  static constexpr bool has_rough = !std::same_as<S, float> && N > 1;
+
+  template <int N>
+  struct Result {
+    Axes<N> normal;  // this and depth: of lanes that are settled
+    Numbers<N> depth;
+    Numbers<N> near, settled;  // 1 or 0; near: inside, or outside by a thousandth
+  };
+
+  SuperellipsoidNear(const Vec3<S>& axes, S p, S q) noexcept
+      : exact_(axes, p, q), rough_(rough(axes, p, q)) {}
+
+  template <int N>
+  PALPATE_FLATTEN void solve(const Axes<N>& x, Result<N>& result) const noexcept {
+    if constexpr (has_rough<N>)
+      from_rough<N>(x, result);
+    else
+      directly<N>(x, result);
+  }
+
+ private:
+  // Of the first steps in float; nothing where all are.
+  using Rough = std::conditional_t<std::same_as<S, float>, Absent<0>, SuperellipsoidNewton<float>>;
+  [[nodiscard]] static Rough rough(const Vec3<S>& axes, S p, S q) noexcept {
+    if constexpr (std::same_as<S, float>)
+      return {};
+    else
+      return Rough(axes.template cast<float>(), static_cast<float>(p), static_cast<float>(q));
+  }
+
+  template <class V, class T, std::size_t N>
+  [[nodiscard]] static PALPATE_INLINE std::array<V, 3> load(const std::array<std::array<T, N>, 3>& x,
+                                                            std::size_t i) noexcept {
+    return {load_vector<V>(&x[0][i]), load_vector<V>(&x[1][i]), load_vector<V>(&x[2][i])};
+  }
+
+  template <class V, class T, std::size_t N>
+  [[nodiscard]] static PALPATE_INLINE auto load_all(const std::array<std::array<T, N>, 3>& x) noexcept {
+    constexpr std::size_t step = sizeof(V) / sizeof(T);
+    std::array<std::array<V, 3>, N / step> all;
+    for (std::size_t k = 0; k < all.size(); ++k) all[k] = load<V>(x, k * step);
+    return all;
+  }
+  template <class T, class V>
+  [[nodiscard]] static PALPATE_INLINE V one_where(const MaskOf<V>& mask) noexcept {
+    return mask ? all_of<V>(T(1)) : V{};
+  }
+
+  // First steps down to rounding.
+  template <int N>
+  PALPATE_INLINE void directly(const Axes<N>& x, Result<N>& result) const noexcept {
+    using V = std::conditional_t<N == 1, S, LaneRegister<S>>;
+    using Newton = SuperellipsoidNewton<S>;
+    constexpr std::size_t lanes_of = sizeof(V) / sizeof(S), M = N / lanes_of;
+    constexpr S epsilon = std::numeric_limits<S>::epsilon();
+    // A step's error is the square of its length, times a curvature over another.
+    const S small = (std::max)(S(0.01) * std::sqrt(epsilon), S(64) * epsilon);
+    const auto at = load_all<V>(x);
+    std::array<typename Newton::template Start<V>, M> start;
+    std::array<typename Newton::template Step<V>, M> step;
+    const bool any_near = exact_.descend(at, start, step, small, 8);
+    for (std::size_t k = 0; k < M; ++k) {
+      const std::size_t i = k * lanes_of;
+      store_vector(&result.near[i], one_where<S, V>(start[k].near));
+      if (any_near)
+        set<V, N>(at[k], start[k].foot, exact_.turned(step[k]),
+                  all_true(start[k].shallow, exact_.is_settled(step[k], small)), i, result);
+      else
+        store_vector(&result.settled[i], V{});
+    }
+  }
+
+  // First steps in float, then both steps from one place, where the first alone would need its powers again.
+  template <int N>
+  PALPATE_INLINE void from_rough(const Axes<N>& x, Result<N>& result) const noexcept {
+    using V = LaneRegister<S>;
+    constexpr std::size_t lanes_of = register_lanes<S>, M = N / lanes_of;
+    constexpr S epsilon = std::numeric_limits<S>::epsilon();
+    Axes<N> z;
+    Numbers<N> shallow;
+    if (!begin<N>(x, z, shallow, result)) return;
+    const auto at = load_all<V>(x);
+    std::array<typename SuperellipsoidNewton<S>::template Foot<V>, M> foot;
+    for (std::size_t k = 0; k < M; ++k) foot[k].z = load<V>(z, k * lanes_of);
+    // A third step would be of the second's square over the first; g is off by the cube of the first.
+    const V most = all_of<V>(std::cbrt(epsilon) / S(4));
+    for (int count = 1;; ++count) {
+      bool done = true;
+      for (std::size_t k = 0; k < M; ++k) exact_.raise(foot[k]);
+      for (std::size_t k = 0; k < M; ++k) {
+        const auto step = exact_.newton(at[k], foot[k]);
+        const auto end = exact_.finish(foot[k], step);
+        exact_.move(end.d, foot[k]);
+        const MaskOf<V> is_shallow = load_vector<V>(&shallow[k * lanes_of]) > V{},
+                        settled =
+                            all_true<MaskOf<V>>(end.length * end.length <= S(0.125) * epsilon * step.length,
+                                                step.length <= most, end.excess <= V{}, step.curvature > V{},
+                                                finite<S>(V(step.length + step.curvature + end.length)));
+        set<V, N>(at[k], foot[k], end.g, all_true(is_shallow, settled), k * lanes_of, result);
+        done &= !any<S>(all_true(is_shallow, negated(settled)));
+      }
+      if (done || count == 8) return;
+    }
+  }
+
+  // What the foot and a vector g along its normal say of x.
+  template <class V, int N>
+  PALPATE_INLINE void set(const std::array<V, 3>& x,
+                          const typename SuperellipsoidNewton<S>::template Foot<V>& foot,
+                          const std::array<V, 3>& g, const MaskOf<V>& settled, std::size_t i,
+                          Result<N>& result) const noexcept {
+    const auto& [gx, gy, gz] = g;
+    const V square = gx * gx + gy * gy + gz * gz, per_g = root_of<S>(square) / square;
+    const Vec3<S>& axes = exact_.axes();
+    const std::array<V, 3> n{gx * per_g, gy * per_g, gz * per_g};
+    store_vector(&result.depth[i],
+                 V((foot.z[0] * axes[0] - x[0]) * n[0] + (foot.z[1] * axes[1] - x[1]) * n[1] +
+                   (foot.z[2] * axes[2] - x[2]) * n[2]));
+    for (std::size_t k = 0; k < 3; ++k) store_vector(&result.normal[k][i], n[k]);
+    store_vector(&result.settled[i], one_where<S, V>(all_true<MaskOf<V>>(settled, exact_.is_usable(foot))));
+  }
+
+  // Feet in float. False if no lane is near. Where float is not enough to begin with, x itself is the start.
+  template <int N>
+  [[nodiscard]] PALPATE_INLINE bool begin(const Axes<N>& x, Axes<N>& z, Numbers<N>& shallow,
+                                          Result<N>& result) const noexcept {
+    using F = LaneRegister<float>;
+    constexpr std::size_t lanes_of = register_lanes<float>, M = N / lanes_of;
+    std::array<std::array<float, static_cast<std::size_t>(N)>, 3> y;
+    std::array<float, static_cast<std::size_t>(N)> near, deep;
+    for (std::size_t k = 0; k < 3; ++k) lanes<N>(y[k]) = lanes<N>(x[k]).template cast<float>();
+    const auto at = load_all<F>(y);
+    std::array<SuperellipsoidNewton<float>::Start<F>, M> start;
+    std::array<SuperellipsoidNewton<float>::Step<F>, M> step;
+    const bool any_near = rough_.descend(at, start, step, 5e-4f, 4);
+    if (!any_near) {
+      result.near = result.settled = {};
+      return false;
+    }
+    for (std::size_t k = 0; k < M; ++k) {
+      const std::size_t i = k * lanes_of;
+      store_vector(&near[i], one_where<float, F>(start[k].near));
+      store_vector(&deep[i], one_where<float, F>(start[k].shallow));
+      for (std::size_t j = 0; j < 3; ++j) {
+        const F foot = start[k].foot.z[j];
+        store_vector(&y[j][i], F(finite<float>(foot) ? foot : all_of<F>(1.0f)));
+      }
+    }
+    lanes<N>(result.near) = lanes<N>(near).template cast<S>();
+    lanes<N>(shallow) = lanes<N>(deep).template cast<S>();
+    for (std::size_t k = 0; k < 3; ++k) lanes<N>(z[k]) = lanes<N>(y[k]).template cast<S>();
+    return true;
+  }
+  template <int N, class T>
+  [[nodiscard]] static PALPATE_INLINE auto lanes(std::array<T, static_cast<std::size_t>(N)>& a) noexcept {
+    return Eigen::Map<LaneArray<T, N>>(a.data());
+  }
+  template <int N, class T>
+  [[nodiscard]] static PALPATE_INLINE auto lanes(
+      const std::array<T, static_cast<std::size_t>(N)>& a) noexcept {
+    return Eigen::Map<const LaneArray<T, N>>(a.data());
+  }
+
+  SuperellipsoidNewton<S> exact_;
+  PALPATE_NO_UNIQUE_ADDRESS Rough rough_;
+};
+
+}  // namespace palpate::detail

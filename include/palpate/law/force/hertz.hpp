@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file A contact that grows with depth, in series with the body behind it: a ball or another smooth tool on
+/// a body of finite size.
+
+#include <palpate/core/error.hpp>
+#include <palpate/law/force/concept.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace palpate {
+
+/// Hertz's contact in series with a spring.
+///
+///     D = (F/k)^(2/3) + C F,   energy = (2/5) k^(-2/3) F^(5/3) + C F^2 / 2      (F = 0 for D <= 0)
+///
+/// | symbol | name         | unit    | range                                                                |
+/// |--------|--------------|---------|----------------------------------------------------------------------|
+/// | D      | argument     | m       | any; D <= 0 and NaN give 0                                           |
+/// | k      | `k`          | N/m^1.5 | > 0: (4/3) E/(1-nu^2) sqrt(R), R the relative radius of curvature    |
+/// | C      | `compliance` | m/N     | how much the body as a whole gives way; 0 is a half-space, < 0 a layer on something stiff |
+///
+/// F = k D^(3/2) where D is small, D/C where it is large. dF/dD is 0 at D = 0. Within 8 epsilon of the exact
+/// root. With C < 0 D ends before F does: from e = C k sqrt(D) = -0.3 on, F = 2.06 k D^(3/2). Bad parameters:
+/// SetupError. Does not model: friction beneath the tool, depths near R, adhesion. No equation of the paper;
+/// sources: [hertz1882], [johnson1985] ch. 4.
+template <Real S>
+class HertzForce {
+ public:
+  using Scalar = S;
+
+  struct Params {
+    S k;                  ///< [N/m^1.5] > 0
+    S compliance = S(0);  ///< [m/N]
+  };
+
+  explicit HertzForce(const Params& params) : p_(params) {
+    require_positive(p_.k, "HertzForce", "k [N/m^1.5] must be > 0 and finite");
+    require_finite(p_.compliance, "HertzForce", "compliance [m/N] must be finite");
+  }
+
+  /// F [N] at depth D [m].
+  [[nodiscard]] S force(S depth) const noexcept { return is_positive(depth) ? at(depth).force : S(0); }
+  /// dF/dD [N/m] at depth D [m].
+  [[nodiscard]] S stiffness(S depth) const noexcept {
+    if (!is_positive(depth)) return S(0);
+    const Split s = at(depth);
+    return s.force / (depth * (depth > s.depth ? S(2) / S(3) : S(1) - s.own / S(3)));
+  }
+  /// Integral of F from 0 to D [J].
+  [[nodiscard]] S energy(S depth) const noexcept {
+    if (!is_positive(depth)) return S(0);
+    const Split s = at(depth);
+    return s.series_force * s.depth * (S(0.5) - S(0.1L) * s.own) +
+           S(0.4L) * (s.force * depth - s.series_force * s.depth);
+  }
+  /// D [m] at the force F [N].
+  [[nodiscard]] S depth(S force) const noexcept {
+    if (!is_positive(force)) return S(0);
+    if (p_.compliance < S(0)) {
+      const Split end = at(series_depth());
+      if (force > end.force) {
+        const S over = std::cbrt(force / end.force);
+        return end.depth * over * over;
+      }
+    }
+    const S root = std::cbrt(force / p_.k);
+    return root * root + p_.compliance * force;
+  }
+  /// No limit: infinity.
+  [[nodiscard]] S max_depth() const noexcept { return std::numeric_limits<S>::infinity(); }
+  [[nodiscard]] const Params& params() const noexcept { return p_; }
+
+ protected:
+  struct Known {};
+  HertzForce(const Params& params, Known) noexcept : p_(params) {}
+
+  struct Split {
+    S force;         // F [N]
+    S depth;         // D, or where the series ends
+    S series_force;  // F there [N]
+    S own;           // (F/k)^(2/3) / D there: the contact's own share of the depth
+  };
+  // With F = k D^(3/2) v^3: v^2 + e v^3 = 1, e = C k sqrt(D). The start is within 13 %, and has the slope of
+  // v at e = 0; three of Halley's steps, of cubic convergence, leave rounding alone.
+  [[nodiscard]] Split at(S depth) const noexcept {
+    const S d = (std::min)(depth, series_depth()), root = std::sqrt(d), e = p_.compliance * p_.k * root;
+    S v = S(1) / std::cbrt(S(1) + S(1.5) * e);
+    for (int i = 0; i < 3; ++i) {
+      const S ev = e * v, f = v * v * (S(1) + ev) - S(1), f1 = v * (S(2) + S(3) * ev), f2 = S(2) + S(6) * ev;
+      v -= S(2) * f * f1 / (S(2) * f1 * f1 - f * f2);
+    }
+    const S force = p_.k * root * d * (v * v * v), over = depth / d;
+    return {depth > d ? force * over * std::sqrt(over) : force, d, force, v * v};
+  }
+  // e = -0.3; that without end would be at -0.385.
+  [[nodiscard]] S series_depth() const noexcept {
+    if (!(p_.compliance < S(0))) return (std::numeric_limits<S>::max)();
+    const S root = S(-0.3L) / (p_.compliance * p_.k);
+    return (std::min)(root * root, (std::numeric_limits<S>::max)());
+  }
+
+ private:
+  Params p_;
+};
+
+static_assert(ForceLaw<HertzForce<float>> && ForceLaw<HertzForce<double>>);
+
+}  // namespace palpate

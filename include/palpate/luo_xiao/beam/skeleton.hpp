@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  The beam skeleton of one contact: beams from the contact to every extremal point (V.A.1).
+
+#include <palpate/core/error.hpp>
+#include <palpate/core/fixed_vector.hpp>
+#include <palpate/luo_xiao/beam/concept.hpp>
+#include <palpate/luo_xiao/beam/euler_bernoulli.hpp>
+#include <palpate/luo_xiao/beam/sharing.hpp>
+#include <palpate/luo_xiao/beam/volume_preserving.hpp>
+
+#include <algorithm>
+#include <span>
+#include <type_traits>
+
+namespace palpate {
+
+/// What a skeleton needs of a contact. Object coordinates.
+template <Real S>
+struct SkeletonContact {
+  Vec3<S> place = Vec3<S>::Zero();         ///< on the undeformed surface [m]
+  Vec3<S> force = Vec3<S>::Zero();         ///< F on the elastic object: minus the force on the tool [N]
+  Vec3<S> displacement = Vec3<S>::Zero();  ///< D [m]
+  S normal_force = 0;                      ///< F_cn >= 0 [N]: how far the contact counts among several
+
+  [[nodiscard]] bool operator==(const SkeletonContact&) const noexcept = default;
+};
+
+/// What the beams carry, for a scene of scalar S; the numbers come from a solve in double.
+template <Real S, std::size_t N>
+struct SkeletonLoad {
+  struct Beam {
+    Vec3<S> axis;   ///< unit, extremal point to contact; any where they coincide
+    S length;       ///< l_i [m]
+    Vec3<S> force;  ///< F_i [N]; sum F_i = F
+  };
+  FixedVector<Beam, N> beams;              ///< one per extremal point, in their order
+  Vec3<S> displacement = Vec3<S>::Zero();  ///< d of the common end [m]
+  double total_length = 0;                 ///< sum l_i [m]: gives the section
+  bool shared = false;  ///< false: bad input, or no unique answer (`PlanarRatios`); all F_i are 0
+};
+
+/// Straight beams from a contact to the n extremal points, fixed there and loaded at their common end.
+///
+/// | parameter | role                                            | default              |
+/// |-----------|-------------------------------------------------|----------------------|
+/// | `S`       | scalar of the scene; the solve is in double     |                      |
+/// | `T`       | beam theory                                     | `EulerBernoulli`     |
+/// | `R`       | section rule                                    | `VolumePreserving`   |
+/// | `P`       | sharing of F                                    | `CommonEnd`          |
+/// | `N`       | most extremal points                            | 64                   |
+///
+/// Reported at set-up: no point, more than N, a coordinate beyond 1e6 m. Points may coincide.
+/// The servo tick calls `share`. Source: [luo2005], V.A.1.
+template <Real S, BeamTheory T = EulerBernoulli<double>, SectionRule R = VolumePreserving<double>,
+          LoadSharing P = CommonEnd, std::size_t N = 64>
+class Skeleton {
+  static_assert(std::is_same_v<typename T::Scalar, double> &&
+                    std::is_same_v<typename R::Section::Scalar, double>,
+                "palpate::Skeleton: theory and section are of double, whatever the scene's scalar");
+
+ public:
+  using Scalar = S;
+  using Theory = T;
+  using Section = typename R::Section;
+  using Load = SkeletonLoad<S, N>;
+  using Beams = FixedVector<SkeletonBeam, N, Spare::undefined>;
+
+  /// Lengths below this part of the longest are held at it: such a beam takes the whole load to rounding.
+  static constexpr double least_length = 1e-15;
+  /// kt is held at this times ka, reached by Euler-Bernoulli at l = r/1155 (with shear it never is): both
+  /// still grow without bound as l -> 0, but their ratio does not, and no digits are lost.
+  static constexpr double most_ratio = 1e6;
+  static constexpr double most_coordinate = 1e6;  ///< [m]: a contact further out is bad input
+
+  /// `extremal_points` [m], in object coordinates.
+  Skeleton(std::span<const Vec3<S>> extremal_points, const T& theory, const R& rule)
+      : theory_(theory), rule_(rule) {
+    if (extremal_points.empty()) fail("Skeleton", "needs at least one extremal point");
+    if (extremal_points.size() > N) {
+      fail("Skeleton", "more extremal points than its capacity", static_cast<double>(extremal_points.size()));
+    }
+    for (std::size_t i = 0; i < extremal_points.size(); ++i) {
+      if (!is_place(extremal_points[i])) {
+        fail_at("Skeleton", "coordinates must be finite and below 1e6 m", "extremal point", i);
+      }
+      points_.push_back(extremal_points[i]);
+    }
+  }
+
+  /// Shares the contact's force among the beams. Deterministic; independent of the order of points to
+  /// rounding.
+  void share(const SkeletonContact<S>& contact, Load& load) const noexcept {
+    Beams beams;
+    begin(contact, beams, load);
+    Vec3<double> d = Vec3<double>::Zero();
+    const bool shared =
+        is_usable(contact) && is_finite(contact.displacement) &&
+        P::share(std::span<SkeletonBeam>(beams.begin(), beams.size()), contact.force.template cast<double>(),
+                 contact.displacement.template cast<double>(), d);
+    finish(beams, d, shared, load);
+  }
+
+  [[nodiscard]] const FixedVector<Vec3<S>, N>& points() const noexcept { return points_; }
+  [[nodiscard]] const T& theory() const noexcept { return theory_; }
+  /// The section of the beams of a load.
+  [[nodiscard]] Section section(const Load& load) const noexcept { return rule_.section(load.total_length); }
+
+  [[nodiscard]] static bool is_usable(const SkeletonContact<S>& contact) noexcept {
+    return is_place(contact.place) && is_finite(contact.force);
+  }
+
+  /// Beams of a contact with their stiffnesses and no force; a contact of no usable place stands at the
+  /// origin. For those who build a system of their own, as `RegionSkeletons` does.
+  void begin(const SkeletonContact<S>& contact, Beams& beams, Load& load) const noexcept {
+    const Vec3<double> place =
+        is_place(contact.place) ? Vec3<double>(contact.place.template cast<double>()) : Vec3<double>::Zero();
+    double sum = 0, longest = 0;
+    beams.clear();
+    for (const Vec3<S>& point : points_) {
+      const Vec3<double> axis = place - point.template cast<double>();
+      const double length = axis.norm();  // coordinates are below 1e6 m
+      sum += length;
+      longest = (std::max)(longest, length);
+      beams.push_back({axis, length, 0, 0, Vec3<double>::Zero()});
+    }
+    load.total_length = sum;
+    const Section section = rule_.section(sum);
+    const double floor = longest > 0 ? least_length * longest : 1.0;  // all lengths 0: all alike
+    for (SkeletonBeam& beam : beams) {
+      if (beam.length >= floor) {
+        beam.axis /= beam.length;
+      } else {
+        beam.axis = Vec3<double>::UnitX();
+        beam.length = floor;
+      }
+      beam.axial = theory_.axial_stiffness(section, beam.length);
+      beam.transverse =
+          (std::min)(theory_.transverse_stiffness(section, beam.length), most_ratio * beam.axial);
+    }
+  }
+
+  /// Writes solved beams to a load in the scene's scalar; zeros unless `shared` and all is finite.
+  void finish(const Beams& beams, const Vec3<double>& d, bool shared, Load& load) const noexcept {
+    load.beams.clear();
+    load.displacement = d.cast<S>();
+    shared = shared && is_finite(load.displacement);
+    for (const SkeletonBeam& beam : beams) {
+      load.beams.push_back(
+          {beam.axis.template cast<S>(), static_cast<S>(beam.length), beam.force.template cast<S>()});
+      shared = shared && is_finite(load.beams[load.beams.size() - 1].force);
+    }
+    load.shared = shared;
+    if (shared) return;
+    load.displacement.setZero();
+    for (auto& beam : load.beams) beam.force.setZero();
+  }
+
+ private:
+  [[nodiscard]] static bool is_place(const Vec3<S>& x) noexcept {
+    return is_finite(x) && x.cwiseAbs().maxCoeff() <= S(most_coordinate);
+  }
+
+  FixedVector<Vec3<S>, N> points_;
+  T theory_;
+  R rule_;
+};
+
+}  // namespace palpate

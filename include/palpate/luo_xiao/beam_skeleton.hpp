@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  The paper's deformation model: skeleton, released ends, interpolation, local neighbourhood, output.
+
+#include <palpate/luo_xiao/beam/regions.hpp>
+#include <palpate/luo_xiao/beam/release.hpp>
+#include <palpate/luo_xiao/displacement_field.hpp>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+namespace palpate {
+
+/// Contacts to vertices (V, VI): each contact's force is shared among its beams, the released ends give the
+/// u_i of the extremal points, and a `DisplacementField` draws u_i and D.
+///
+/// | parameter | role                                                       | default            |
+/// |-----------|------------------------------------------------------------|--------------------|
+/// | `R`       | `RegionSkeletons<...>`: beams and how contacts couple      |                    |
+/// | `I`       | interpolation; its scalar may be narrower than the scene's |                    |
+/// | `N`       | local neighbourhood                                        | `AreaNeighbourhood` |
+///
+/// | symbol | name              | unit | range                                                             |
+/// |--------|-------------------|------|-------------------------------------------------------------------|
+/// | o      | `Params::fixed`   | m    | finite: the bottom centre, which does not move                    |
+///
+/// Set-up reports extremal points of skeleton and partition that are not the same, in the same order. Source:
+/// [luo2005], V and VI.
+template <class R, Interpolation I, Neighbourhood N = AreaNeighbourhood<typename I::Scalar>>
+class BeamSkeletonDeformation {
+ public:
+  using Scalar = typename R::Scalar;
+  using S = Scalar;
+  using D = typename I::Scalar;  ///< the display's scalar
+  static constexpr bool active = true;
+  static constexpr std::size_t most_contacts = decltype(R::Result::loads)::capacity;
+
+  struct Params {
+    Vec3<S> fixed = Vec3<S>::Zero();  ///< o [m]
+    bool normals{true};               ///< see DisplacementField
+  };
+
+  BeamSkeletonDeformation(R regions, I interpolation, N neighbourhood, const MeshData<D>& mesh,
+                          const Params& params)
+      : p_(params),
+        regions_(std::move(regions)),
+        field_(std::move(interpolation), std::move(neighbourhood), mesh,
+               {.contacts = most_contacts, .normals = params.normals}) {
+    const auto points = field_.partition().points();
+    const auto& ends = regions_.skeleton().points();
+    if (!is_finite(p_.fixed)) fail(name, "fixed must be finite");
+    if (ends.size() != points.size())
+      fail(name, "skeleton and partition must have the same extremal points",
+           static_cast<double>(ends.size()));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (ends[i].template cast<D>() != points[i].position)
+        fail_at(name, "skeleton and partition must have the same place", "extremal point", i);
+    }
+    released_.resize(points.size());
+    corners_.resize(points.size() * most_contacts);
+  }
+
+  template <Real T>
+  void write_rest(const VertexBuffer<T>& out) noexcept {
+    field_.write_rest(out);
+    result_ = {};
+    loaded_.clear();
+    shown_.clear();
+  }
+
+  /// Writes what moved since the last call. More contacts than the skeleton takes: the surplus is left out,
+  /// reported. With the same contacts as in the last call nothing is done.
+  template <Real T>
+  Moved<S> write(std::span<const ContactState<S>> contacts, const VertexBuffer<T>& out) noexcept {
+    Moved<S> result;
+    if (contacts.size() > most_contacts) result.status |= Status::region_overflow;
+    if (out.positions == nullptr || !take(contacts.first((std::min)(contacts.size(), most_contacts))))
+      return result;
+    const std::size_t count = loaded_.size(), points = released_.size();
+    regions_.share(std::span<const SkeletonContact<S>>(loaded_.begin(), count), result_);
+    for (std::size_t j = 0; j < count; ++j) {
+      release(regions_.skeleton(), result_.loads[j], p_.fixed, loaded_[j].displacement,
+              std::span<Vec3<S>>(released_));
+      for (std::size_t i = 0; i < points; ++i) corners_[j * points + i] = released_[i].template cast<D>();
+    }
+    const Moved<D> moved = field_.write(std::span<const ContactDisplacement<D>>(shown_.begin(), count),
+                                        std::span<const Vec3<D>>(corners_.data(), count * points), out);
+    result.vertices = moved.vertices;
+    result.lower = moved.lower.template cast<S>();
+    result.upper = moved.upper.template cast<S>();
+    result.status |= moved.status;
+    return result;
+  }
+
+  /// Skeleton loads of the last write(): forces, lengths and axes of all beams.
+  [[nodiscard]] const typename R::Result& loads() const noexcept { return result_; }
+  [[nodiscard]] const DisplacementField<I, N>& field() const noexcept { return field_; }
+  [[nodiscard]] const Params& params() const noexcept { return p_; }
+
+ private:
+  static constexpr const char* name = "BeamSkeletonDeformation";
+
+  // Keeps what is drawn of the contacts; false when it is what is drawn already.
+  bool take(std::span<const ContactState<S>> contacts) noexcept {
+    bool same = contacts.size() == loaded_.size();
+    for (std::size_t j = 0; same && j < contacts.size(); ++j)
+      same = loaded_[j] == loaded(contacts[j]) && shown_[j] == shown(contacts[j]);
+    if (same) return false;
+    loaded_.clear();
+    shown_.clear();
+    for (const ContactState<S>& c : contacts) {
+      loaded_.push_back(loaded(c));
+      shown_.push_back(shown(c));
+    }
+    return true;
+  }
+  [[nodiscard]] static SkeletonContact<S> loaded(const ContactState<S>& c) noexcept {
+    return {c.origin(), -c.force, c.displacement, c.normal_force};
+  }
+  [[nodiscard]] static ContactDisplacement<D> shown(const ContactState<S>& c) noexcept {
+    return {c.origin().template cast<D>(), c.normal.template cast<D>(), c.displacement.template cast<D>(),
+            static_cast<D>(c.area), static_cast<D>(c.points)};
+  }
+
+  Params p_;
+  R regions_;
+  DisplacementField<I, N> field_;
+  typename R::Result result_{};
+  FixedVector<SkeletonContact<S>, most_contacts> loaded_;     // of the last write, as the skeleton sees them
+  FixedVector<ContactDisplacement<D>, most_contacts> shown_;  // and as they are drawn
+  std::vector<Vec3<S>> released_;
+  std::vector<Vec3<D>> corners_;
+};
+
+}  // namespace palpate

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Normals of a partition's vertices, face by face, of those that move.
+
+#include <palpate/core/error.hpp>
+#include <palpate/display/vertex_buffer.hpp>
+#include <palpate/display/vertex_normals.hpp>
+#include <palpate/display/vertex_writer.hpp>
+#include <palpate/luo_xiao/interpolation/partition.hpp>
+
+#include <algorithm>
+#include <array>
+#include <concepts>
+#include <cstdint>
+#include <numeric>
+#include <span>
+#include <vector>
+
+namespace palpate {
+
+/// Unit normals of a FacePartition's vertices, by slot; one whose triangles have collapsed has the
+/// partition's own normal. A face that moves changes the normals of its vertices and of their neighbours in
+/// other faces.
+///
+/// Put a face's vertices where `places_from` says, or `place` them, and say `placed`; then `write_in_row`
+/// those that need no other face's, while its places are in the first cache; `write_apart` the others when
+/// all faces that move are there.
+template <Real S>
+class PartitionNormals {
+ public:
+  /// No vertices.
+  PartitionNormals() = default;
+  /// `triangles`: of the mesh that the partition was made from. All vertices are at rest. Reports a mesh that
+  /// is not closed.
+  PartitionNormals(const FacePartition<S>& partition,
+                   std::span<const std::array<std::uint32_t, 3>> triangles) {
+    const auto order = partition.order();
+    const auto& faces = partition.faces();
+    std::vector<std::uint32_t> slot_of(order.size()), face_of(order.size());
+    for (std::uint32_t slot = 0; slot < order.size(); ++slot) slot_of[order[slot]] = slot;
+    std::vector<std::array<std::uint32_t, 3>> by_slot(triangles.begin(), triangles.end());
+    for (std::size_t t = 0; t < by_slot.size(); ++t) {
+      for (std::uint32_t& v : by_slot[t]) {
+        if (v >= order.size())
+          fail_at("PartitionNormals", "vertex does not exist", "triangle", t, static_cast<double>(v));
+        v = slot_of[v];
+      }
+    }
+    for (std::uint32_t f = 0; f < faces.size(); ++f)
+      for (std::size_t slot = faces[f].first; slot < faces[f].first + faces[f].count; ++slot)
+        face_of[slot] = f;
+    const VertexRings rings(by_slot, order.size());
+    std::vector<std::array<std::uint32_t, 2>> around;  // face, slot: of other faces, next to this one
+    std::vector<VertexRun> runs;
+    for (const Face<S>& face : faces) {
+      std::vector<std::uint32_t> inside(face.count);
+      std::iota(inside.begin(), inside.end(), static_cast<std::uint32_t>(face.first));
+      around.clear();
+      for (const std::uint32_t slot : inside)
+        for (const std::uint32_t other : rings[slot])
+          if (face_of[other] != face_of[slot]) around.push_back({face_of[other], other});
+      runs.push_back({face.first, face.count});
+      inside_.push_back(normals_.add(rings, inside, runs.back()));
+      std::sort(around.begin(), around.end());
+      around.erase(std::unique(around.begin(), around.end()), around.end());
+      rim_start_.push_back(rim_.size());
+      for (std::size_t k = 0; k < around.size();) {
+        const std::uint32_t f = around[k][0];
+        std::vector<std::uint32_t> slots;
+        for (; k < around.size() && around[k][0] == f; ++k) slots.push_back(around[k][1]);
+        rim_.push_back({f, normals_.add(rings, slots)});
+      }
+    }
+    rim_start_.push_back(rim_.size());
+    places_ = VertexPlaces(runs, normals_.packed_reads(order.size()));
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      place(0, faces[f].count, partition.rest_from(faces[f], 0));
+      placed(f);
+    }
+  }
+
+  /// Where the vertices of the face to come are put, from its slot number `from` on, in whole groups of
+  /// registers [m].
+  [[nodiscard]] PALPATE_INLINE Lists<float> places_from(std::size_t from) noexcept {
+    return {places_.axis(0) + from, places_.axis(1) + from, places_.axis(2) + from};
+  }
+  /// Where `count` of its vertices are now, from its slot number `from` on [m], if they are not put there
+  /// already.
+  PALPATE_INLINE void place(std::size_t from, std::size_t count, const Lists<const S>& at) noexcept {
+    if constexpr (std::same_as<S, float>) {
+      if (at[0] == places_.axis(0) + from) return;
+    }
+    places_.set_row(from, count, at[0], at[1], at[2]);
+  }
+  /// It was face f, and all of its vertices are there.
+  void placed(std::size_t f) noexcept { places_.pack(f); }
+
+  /// Of face f's vertices those that need no other face's, right after its vertices have been placed.
+  template <Real T>
+  PALPATE_FLATTEN void write_in_row(const FacePartition<S>& partition, std::size_t f,
+                                    const VertexBuffer<T>& out) const noexcept {
+    normals_.each_in_row(inside_[f], places_, at_rest(partition, f), writer(partition, out));
+  }
+  /// Of the faces that moved, moved[f] != 0, the others, and their neighbours in faces that did not.
+  template <Real T>
+  PALPATE_FLATTEN void write_apart(const FacePartition<S>& partition, std::span<const std::uint8_t> moved,
+                                   const VertexBuffer<T>& out) const noexcept {
+    for (std::size_t f = 0; f < moved.size(); ++f) {
+      if (!moved[f]) continue;
+      normals_.each_apart(inside_[f], places_, at_rest(partition, f), writer(partition, out));
+      for (std::size_t k = rim_start_[f]; k < rim_start_[f + 1]; ++k)
+        if (!moved[rim_[k].face])
+          normals_.each_apart(rim_[k].vertices, places_, at_rest(partition, rim_[k].face),
+                              writer(partition, out));
+    }
+  }
+
+ private:
+  struct Rim {  // vertices of another face next to this one
+    std::uint32_t face;
+    VertexNormals::Group vertices;
+  };
+
+  [[nodiscard]] static auto at_rest(const FacePartition<S>& partition, std::size_t f) noexcept {
+    return [&partition, &face = partition.faces()[f]](std::size_t slot) {
+      const auto normal = [&](int axis) {
+        return static_cast<float>(partition.normal(face, axis)[slot - face.first]);
+      };
+      return Packed3{normal(0), normal(1), normal(2)};
+    };
+  }
+  template <Real T>
+  [[nodiscard]] static auto writer(const FacePartition<S>& partition, const VertexBuffer<T>& out) noexcept {
+    return [to = detail::VertexWriter<T>(out.normals, out.normal_stride), order = partition.order().data()](
+               const auto& slot, const auto& x, const auto& y, const auto& z) PALPATE_INLINE_LAMBDA {
+      to.put_register([&](std::uint32_t k) { return order[slot(k)]; }, x, y, z);
+    };
+  }
+
+  VertexNormals normals_;
+  std::vector<VertexNormals::Group> inside_;  // by face
+  std::vector<Rim> rim_;
+  std::vector<std::size_t> rim_start_;
+  VertexPlaces places_;  // of one face's slots after the other's, and packed
+};
+
+}  // namespace palpate

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file What an interpolation must offer: displacements of corners to a field over the display vertices
+/// (V.A.2). Read this before writing one.
+///
+/// | shipped               | field between the corners                            | use it when                         |
+/// |-----------------------|------------------------------------------------------|-------------------------------------|
+/// | `PhongInterpolation`  | magnitude and angle to the normal vary linearly      | the paper's; keeps bulges round     |
+/// | `LinearInterpolation` | vectors vary linearly                                | fastest; affine fields stay exact   |
+/// | `SmoothInterpolation` | least third-order bending energy (triharmonic)       | no creases at the faces' edges      |
+///
+/// Corners are the extremal points and one contact point. The fields of several contacts are summed by the
+/// caller, so an interpolation sees one contact at a time; none of its corners is another contact's point, or
+/// a contact that appears at zero force would press a dimple of zero displacement into the others' fields.
+/// Absent on purpose: spherical averages of directions; they iterate, and have no answer for opposite
+/// directions.
+
+#include <palpate/core/vector.hpp>
+#include <palpate/luo_xiao/interpolation/partition.hpp>
+
+#include <concepts>
+#include <cstdint>
+#include <span>
+
+namespace palpate {
+
+/// An equivalent contact as the shape sees it. Object coordinates.
+template <Real S>
+struct ContactDisplacement {
+  Vec3<S> place = Vec3<S>::Zero();         ///< p_0 on the undeformed surface [m]
+  Vec3<S> normal = Vec3<S>::UnitY();       ///< of the undeformed surface there: outward, unit
+  Vec3<S> displacement = Vec3<S>::Zero();  ///< D [m]
+  S area = 0;                              ///< of the region [m^2]; 0 for a single point
+  S points = 1;                            ///< tool points in the region
+
+  [[nodiscard]] bool operator==(const ContactDisplacement&) const noexcept = default;
+};
+
+/// A displacement that can be drawn: finite and below 1e6 m, so that nothing overflows even in a float
+/// buffer.
+template <Real S>
+[[nodiscard]] inline bool is_drawable(const Vec3<S>& u) noexcept {
+  return is_finite(u) && u.cwiseAbs().maxCoeff() <= S(1e6);
+}
+template <Real S>
+[[nodiscard]] inline bool is_drawable(const ContactDisplacement<S>& c) noexcept {
+  return is_drawable(c.place) && is_finite(c.normal) && is_drawable(c.displacement) && is_finite(c.area) &&
+         is_finite(c.points);
+}
+
+template <
+    class I>  // one contact and its corners' displacements, made ready once per tick; must not need the heap
+concept HasLoad = std::default_initializable<typename I::Load> && std::copyable<typename I::Load>;
+
+template <class I>  // the faces and slots that `add` speaks of
+concept HasPartition = requires(const I& field) {
+  { field.partition() } noexcept -> std::same_as<const FacePartition<typename I::Scalar>&>;
+};
+
+template <
+    class
+    I>  // corner displacements u_i [m], one per extremal point, and the contact; bad input: nothing moves
+concept HasPrepare =
+    requires(const I& field, std::span<const Vec3<typename I::Scalar>> corners,
+             const ContactDisplacement<typename I::Scalar>& contact, typename I::Load& load) {
+      { field.prepare(corners, contact, load) } noexcept;
+    };
+
+template <class I>  // does the load move the face at all; false for a default load
+concept HasMoves = requires(const I& field, const typename I::Load& load, std::size_t face) {
+  { field.moves(load, face) } noexcept -> std::same_as<bool>;
+};
+
+template <class I>  // do two loads give the same field on the face, bit for bit; may say false when in doubt
+concept HasSame = requires(const I& field, const typename I::Load& load, std::size_t face) {
+  { field.same(load, load, face) } noexcept -> std::same_as<bool>;
+};
+
+/// to = start + the field of a load that moves the face, at `count` of its slots from number `from` on, at
+/// most `block_size` [m]. `start` and `to` may be the same. `scale`, if not null, multiplies the contact's
+/// displacement per vertex (V.B). All lists are read and written in whole groups of registers (LaneGroup).
+template <class I>
+concept HasAdd = requires(const I& field, const typename I::Load& load, std::size_t face, std::size_t from,
+                          std::size_t count, const typename I::Scalar* scale,
+                          const Lists<const typename I::Scalar>& start, const Lists<typename I::Scalar>& to) {
+  { field.add(load, face, from, count, scale, start, to) } noexcept;
+};
+
+/// Continuous over the surface and in its inputs; D at the contact's place and u_i at the corners; zero
+/// corners and zero D give exactly zero; turning all vectors turns the field.
+template <class I>
+concept Interpolation = Real<typename I::Scalar> && HasLoad<I> && HasPartition<I> && HasPrepare<I> &&
+                        HasMoves<I> && HasSame<I> && HasAdd<I> && std::copyable<I>;
+
+namespace detail {
+
+/// Do two active loads that hold weights `at`, a value per corner and the contact's give the same on the
+/// face, bit for bit?
+template <Real S, class Load>
+[[nodiscard]] inline bool same_values(const FacePartition<S>& partition, const Load& a, const Load& b,
+                                      std::size_t face) noexcept {
+  const Face<S>& f = partition.faces()[face];
+  for (std::size_t k = 0; k < f.corners; ++k) {
+    if (a.corner[f.corner[k]] != b.corner[f.corner[k]]) return false;
+  }
+  const bool split = partition.share(a.at, face) > S(0) || partition.share(b.at, face) > S(0);
+  return !split || (a.contact == b.contact && a.at.weight == b.at.weight);
+}
+
+}  // namespace detail
+
+}  // namespace palpate

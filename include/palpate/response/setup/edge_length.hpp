@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file Edge length that the solve mesh should have at each place of the surface. Set-up only.
+///
+///     B(x) = min over y of (clamp(t(y), f h, h) + g dist(x, y))
+///     L(x) = min(B, 3/4 B + g dist(x, crease), r B + g dist(x, rim), 2 r B + g dist(x, rim along a crease))
+///
+/// | symbol | name                                      | value                                               |
+/// |--------|-------------------------------------------|-----------------------------------------------------|
+/// | h      | edge length where nothing is special [m]  | N = integral of 2 / (sqrt(3) L^2) over the surface  |
+/// | t      | thickness, along the inward normal [m]    | of the surface                                      |
+/// | f      | shortest edge in thin parts over h [-]    | 1/4 to 1, the least that lets h grow by 1/4 at most |
+/// | r, g   | `rim_ratio`, `growth` [-]                 | RemeshParams                                        |
+///
+/// Creases: the convex ones. Why: bending needs edges of the thickness. Next to a crease the answer to a
+/// contact varies over the distance to it. Traction at the rim grows like dist^-0.5 within a smooth part,
+/// along a right angle's edge like dist^-0.4 only (nu = 1/2) [williams1952]. Where all of a body is thin, no
+/// vertices are left over for its thin parts.
+
+#include <palpate/response/setup/smooth_surface.hpp>
+
+namespace palpate {
+
+/// What the remesher works on. Features are edges that stay: creases and the rim.
+struct RemeshParams {
+  double vertices = 600;   ///< wanted number of vertices [-]
+  double rim_ratio = 0.3;  ///< r: edge length at the rim over that of the body [-]
+  double growth = 0.35;    ///< g: edge length gained per distance from the rim, a crease or a thin part [-]
+};
+
+namespace detail {
+
+/// Wanted edge length at the vertices of a mesh.
+class EdgeLength {
+ public:
+  EdgeLength(const SmoothSurface& surface, const RemeshParams& params) : surface_(surface), params_(params) {
+    Vec3d low = surface.mesh().vertices[0], high = low;
+    for (const Vec3d& p : surface.mesh().vertices) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    reach_ = (high - low).norm();
+  }
+
+  /// The same length everywhere, until the next measure().
+  void uniform(double h) {
+    h_ = h;
+    at_.clear();
+  }
+  /// Looks where the vertices are. `features` are sorted keys of edges.
+  void measure(const std::vector<Vec3d>& p, const std::vector<Triangle>& t,
+               const std::vector<std::uint8_t>& fixed, const std::vector<std::uint64_t>& features) {
+    std::vector<Vec3d> crease, rim[2];
+    std::vector<std::uint8_t> side(p.size(), 0), sharp(p.size(), 0);
+    for (std::uint32_t i = 0; i < t.size(); ++i)
+      for (auto v : t[i]) side[v] = static_cast<std::uint8_t>(side[v] | (fixed[i] ? 1 : 2));
+    for (const MeshEdge& e : mesh_edges(t, "Remesher")) {
+      if (!std::binary_search(features.begin(), features.end(), e.key)) continue;
+      const Triangle &l = t[e.triangle[0]], &r = t[e.triangle[1]];
+      const Vec3d nl = area_vector(p[l[0]], p[l[1]], p[l[2]]), nr = area_vector(p[r[0]], p[r[1]], p[r[2]]);
+      const bool convex = nl.dot(p[r[0]] + p[r[1]] + p[r[2]] - 3 * p[e.a()]) < 0;
+      if (convex && nl.dot(nr) < SmoothSurface::crease_cosine * nl.norm() * nr.norm())
+        sharp[e.a()] = sharp[e.b()] = 1;
+    }
+    for (std::size_t v = 0; v < p.size(); ++v) {
+      if (side[v] == 3) rim[sharp[v]].push_back(p[v]);
+      if (sharp[v]) crease.push_back(p[v]);
+    }
+    at_.resize(p.size());
+    for (std::uint32_t v = 0; v < p.size(); ++v)
+      at_[v] = {reach_, distance(p[v], crease), distance(p[v], rim[0]), distance(p[v], rim[1])};
+    sides_.clear();
+    for (const Triangle& c : t) {
+      const Vec3d centre = (p[c[0]] + p[c[1]] + p[c[2]]) / 3;
+      const double thickness = surface_.thickness_at(centre, reach_);
+      for (std::size_t k = 0; k < 3; ++k) {
+        at_[c[k]].thickness = (std::min)(at_[c[k]].thickness, thickness);
+        const std::uint32_t a = c[k], b = c[(k + 1) % 3];
+        if (a < b) sides_.push_back({a, b, params_.growth * (p[a] - p[b]).norm()});
+      }
+    }
+    update();
+  }
+  /// Chooses h, and f, for a number of vertices. After measure().
+  void fit(const std::vector<Vec3d>& p, const std::vector<Triangle>& t, double vertices) {
+    thin_ = 1;
+    fit_h(p, t, vertices);
+    const double most = 1.25 * h_;
+    for (thin_ = 0.25; thin_ < 1; thin_ *= std::sqrt(2.0)) {
+      fit_h(p, t, vertices);
+      if (!(h_ > most)) return;
+    }
+    thin_ = 1;
+    fit_h(p, t, vertices);
+  }
+  /// Vertices were dropped: number[v] is the new number of v, or ~0.
+  void renumber(const std::vector<std::uint32_t>& number, std::size_t count) {
+    for (std::size_t v = 0; v < at_.size(); ++v)
+      if (number[v] != ~0u) {
+        at_[number[v]] = at_[v];
+        wanted_[number[v]] = wanted_[v];
+      }
+    if (at_.empty()) return;
+    at_.resize(count);
+    wanted_.resize(count);
+  }
+
+  [[nodiscard]] double length() const noexcept { return h_; }
+  [[nodiscard]] double operator()(std::uint32_t v) const noexcept { return at_.empty() ? h_ : wanted_[v]; }
+  [[nodiscard]] double operator()(std::uint32_t a, std::uint32_t b) const noexcept {
+    return 0.5 * ((*this)(a) + (*this)(b));
+  }
+
+ private:
+  struct At {
+    double thickness, crease, rim, sharp_rim;
+  };
+  struct Side {
+    std::uint32_t a, b;
+    double growth;
+  };
+
+  [[nodiscard]] double distance(const Vec3d& x, const std::vector<Vec3d>& points) const noexcept {
+    double best = 1e6 * reach_ * reach_;
+    for (const Vec3d& q : points) best = (std::min)(best, (q - x).squaredNorm());
+    return std::sqrt(best);
+  }
+  void fit_h(const std::vector<Vec3d>& p, const std::vector<Triangle>& t, double vertices) {
+    double low = 0.02 * h_, high = 50 * h_;
+    for (int i = 0; i < 40; ++i) {
+      h_ = std::sqrt(low * high);
+      update();
+      double expected = 0;
+      for (const Triangle& c : t) {
+        const double l = (wanted_[c[0]] + wanted_[c[1]] + wanted_[c[2]]) / 3;
+        expected += area_vector(p[c[0]], p[c[1]], p[c[2]]).norm() * 2 / (std::sqrt(3.0) * l * l);
+      }
+      (expected > vertices ? low : high) = h_;
+    }
+  }
+  void update() {
+    wanted_.resize(at_.size());
+    for (std::size_t v = 0; v < at_.size(); ++v) wanted_[v] = std::clamp(at_[v].thickness, thin_ * h_, h_);
+    for (bool changed = true; changed;) {
+      changed = false;
+      for (const Side& s : sides_) {
+        double &a = wanted_[s.a], &b = wanted_[s.b];
+        if (std::abs(a - b) <= s.growth * (1 + 1e-9)) continue;
+        (a > b ? a : b) = (std::min)(a, b) + s.growth;
+        changed = true;
+      }
+    }
+    for (std::size_t v = 0; v < at_.size(); ++v) {
+      const At& at = at_[v];
+      const double b = wanted_[v], g = params_.growth;
+      wanted_[v] = (std::min)({b, 0.75 * b + g * at.crease, params_.rim_ratio * b + g * at.rim,
+                               (std::min)(2 * params_.rim_ratio, 1.0) * b + g * at.sharp_rim});
+    }
+  }
+
+  const SmoothSurface& surface_;
+  RemeshParams params_;
+  std::vector<At> at_;
+  std::vector<Side> sides_;
+  std::vector<double> wanted_;
+  double h_ = 1, thin_ = 1, reach_ = 0;
+};
+
+}  // namespace detail
+}  // namespace palpate

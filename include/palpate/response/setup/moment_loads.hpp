@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file Loads that pull a patch apart or turn it, and what the body's correction answers; for the patch
+/// table.
+///
+/// | number | load of unit moment on the flat disc's weight, p from its centre          | as a tensor A        |
+/// |--------|---------------------------------------------------------------------------|----------------------|
+/// | 0      | radial double force, sum p.f = 1                                          | I                    |
+/// | 1, 2   | shears s = t1 t1 - t2 t2, t1 t2 + t2 t1, moment sum f p^T = s / 2         | s                    |
+/// | 3, 4   | tilts along t1, t2, m the inward normal, sum p (f.m) = t                  | 2 m t^T              |
+/// t1 = perpendicular(normal), t2 = normal x t1. A node of weight g at p has the force A q, q = g p / sum g
+/// p^2, less where part of the patch is held: none from half on.
+
+#include <palpate/elasticity/near_field.hpp>
+#include <palpate/response/tick/load_mesh.hpp>
+
+namespace palpate {
+
+/// Of a patch around a node, mu = 1.
+struct MomentRow {
+  float mean[5][3] = {};  ///< means of the loads' fields w [1/m^2]
+  float own[15] = {};     ///< their moments, lower triangle by row [1/m^3]
+  float sag = 0;          ///< how deep the patch's edge lies below its plane, at most [m]
+  float droop = 0;        ///< in the mean [m]
+};
+
+namespace detail {
+
+[[nodiscard]] inline std::array<Mat3<double>, 5> moment_loads(const Vec3<double>& normal) noexcept {
+  const Vec3<double> t1 = perpendicular(normal), t2 = normal.cross(t1);
+  const Mat3<double> across = t1 * t2.transpose();
+  return {Mat3<double>::Identity(), t1 * t1.transpose() - t2 * t2.transpose(), across + across.transpose(),
+          -2 * normal * t1.transpose(), -2 * normal * t2.transpose()};
+}
+
+/// each(node, q) of the nodes that share a load around node k; none where they are one place.
+template <class Each>
+void each_moment(const TouchMesh& touch, std::size_t k, std::span<const TouchMesh::Share> shares,
+                 const Each& each) noexcept {
+  const TouchNode& node = touch.nodes()[k];
+  const auto offset = [&](const TouchMesh::Share& s) {
+    return tangential(Vec3<double>(touch.nodes()[s.node].source - node.source), node.normal);
+  };
+  double sum = 0, square = 0;
+  Vec3<double> first = Vec3<double>::Zero();
+  for (const TouchMesh::Share& s : shares) {
+    const Vec3<double> p = offset(s);
+    sum += double(s.weight);
+    first += double(s.weight) * p;
+    square += double(s.weight) * p.squaredNorm();
+  }
+  square -= first.squaredNorm() / (std::max)(sum, 1e-12);
+  if (!(square > 0.1 * node.spacing * node.spacing)) return;
+  const Vec3<double> centre = first / sum;
+  const double t = std::clamp(2 * sum - 1, 0.0, 1.0), unit = t * t * (3 - 2 * t) / square;
+  for (const TouchMesh::Share& s : shares)
+    each(s.node, Vec3<double>(double(s.weight) * unit * (offset(s) - centre)));
+}
+
+/// The table's row but for `sag`. `column(node, l)`: see PatchTable. see(node, each): each(vertex, weight) of
+/// the node's place.
+template <class Column, class See>
+[[nodiscard]] MomentRow find_moments(const TouchMesh& touch, std::size_t k,
+                                     std::span<const TouchMesh::Share> shares, std::size_t stride,
+                                     const Column& column, const See& see) {
+  struct Seen {
+    std::uint32_t vertex;
+    double weight;
+    Vec3<double> q;
+  };
+  MomentRow out;
+  std::vector<Seen> seen;
+  std::vector<std::pair<std::uint32_t, Vec3<double>>> nodes;
+  each_moment(touch, k, shares, [&](std::uint32_t node, const Vec3<double>& q) {
+    const double share = double(shares[nodes.size()].weight);
+    nodes.push_back({node, q});
+    see(node, [&](std::uint32_t vertex, double weight) {
+      auto at =
+          std::find_if(seen.begin(), seen.end(), [vertex](const Seen& s) { return s.vertex == vertex; });
+      if (at == seen.end()) at = seen.insert(at, {vertex, 0, Vec3<double>::Zero()});
+      at->weight += weight * share;
+      at->q += weight * q;
+    });
+  });
+  const auto loads = moment_loads(touch.nodes()[k].normal);
+  double mean[5][3] = {}, own[5][5] = {};
+  for (const auto& [node, q] : nodes)
+    for (std::size_t l = 0; l < 3; ++l) {
+      const float* c = column(node, l);
+      Vec3<double> sum = Vec3<double>::Zero();
+      Mat3<double> moment = Mat3<double>::Zero();  // sum u q^T
+      for (const Seen& s : seen) {
+        const Vec3<double> u{double(c[s.vertex]), double(c[stride + s.vertex]),
+                             double(c[2 * stride + s.vertex])};
+        sum += s.weight * u;
+        moment += u * s.q.transpose();
+      }
+      for (std::size_t s = 0; s < 5; ++s) {
+        const double f = loads[s].row(Eigen::Index(l)).dot(q);
+        for (std::size_t i = 0; i < 3; ++i) mean[s][i] += f * sum[Eigen::Index(i)];
+        for (std::size_t r = 0; r < 5; ++r) own[r][s] += f * loads[r].cwiseProduct(moment).sum();
+      }
+    }
+  for (std::size_t r = 0, e = 0; r < 5; ++r) {
+    for (std::size_t i = 0; i < 3; ++i) out.mean[r][i] = static_cast<float>(mean[r][i]);
+    for (std::size_t s = 0; s <= r; ++s) out.own[e++] = static_cast<float>(0.5 * (own[r][s] + own[s][r]));
+  }
+  return out;
+}
+
+/// `sag` and `droop` of a patch of radius s around node k. Of six places on the edge of a quadric's patch one
+/// is within 30 degrees of its deepest; the mean bend is known from the node's spacing on.
+inline void find_edge(const TouchMesh& touch, std::size_t k, double s, MomentRow& row) {
+  const TouchNode& node = touch.nodes()[k];
+  const Vec3<double> t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
+  const auto each_depth = [&](double radius, const auto& each) {
+    for (std::size_t i = 0; i < 6; ++i) {
+      const double angle = double(i) * std::numbers::pi / 3;
+      const Vec3<double> x = node.source + radius * (std::cos(angle) * t1 + std::sin(angle) * t2);
+      const TouchPlace at = touch.locate(x);
+      Vec3<double> y = Vec3<double>::Zero();
+      for (std::size_t c = 0; c < 3; ++c) y += at.weight[Eigen::Index(c)] * touch.nodes()[at.node[c]].source;
+      each((x - y).dot(node.normal));
+    }
+  };
+  double deepest = 0, sum = 0;
+  each_depth(s, [&](double depth) { deepest = (std::max)(deepest, depth); });
+  const double known = (std::max)(s, node.spacing), less = s / known;
+  each_depth(known, [&](double depth) { sum += depth; });
+  row.sag = static_cast<float>(4.0 / 3 * deepest);
+  row.droop = static_cast<float>(less * less * sum / 6);
+}
+
+}  // namespace detail
+}  // namespace palpate

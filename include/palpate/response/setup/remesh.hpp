@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file Makes a triangle mesh of a wanted number of vertices from a finer or coarser one: split long edges,
+/// collapse short ones, flip to Delaunay, relax, project. Sharp edges and the fixed region's rim stay. Set-up
+/// only. Wanted lengths: edge_length.hpp. Source: [botsch2004].
+
+#include <palpate/response/setup/edge_length.hpp>
+
+#include <unordered_map>
+
+namespace palpate {
+
+namespace detail {
+
+/// Features are edges that stay: creases and the rim.
+class Remesher {
+ public:
+  Remesher(const SmoothSurface& surface, const std::vector<std::uint8_t>& fixed_triangle,
+           const RemeshParams& params)
+      : p_(surface.mesh().vertices),
+        t_(surface.mesh().triangles),
+        fixed_(fixed_triangle),
+        surface_(surface),
+        params_(params),
+        wanted_(surface, params) {
+    const auto& edges = surface.edges();
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+      const bool rim = fixed_[edges[e].triangle[0]] != fixed_[edges[e].triangle[1]];
+      if (!rim && !surface.is_crease(e)) continue;
+      features_.push_back(edges[e].key);
+      segments_.push_back({p_[edges[e].a()], p_[edges[e].b()]});
+    }
+    std::sort(features_.begin(), features_.end());
+  }
+
+  void run() {
+    wanted_.uniform(uniform_length(4 * params_.vertices));
+    if (double(p_.size()) > 8 * params_.vertices) decimate(true);
+    double aim = params_.vertices;
+    for (int pass = 0; pass < 3; ++pass) {
+      measure();
+      wanted_.fit(p_, t_, aim);
+      if (pass == 0) decimate(false);
+      for (int i = 0; i < (pass == 0 ? 6 : 3); ++i) {
+        split();
+        collapse(false);
+        flip();
+        flip();
+        relax();
+      }
+      // Triangles are not all alike and creases are divided into whole edges: up to a tenth more is usual.
+      aim = std::clamp(aim * 1.1 * params_.vertices / double(p_.size()), 0.75 * params_.vertices,
+                       params_.vertices);
+    }
+    compact();
+  }
+
+  std::vector<Vec3d> p_;
+  std::vector<Triangle> t_;
+  std::vector<std::uint8_t> fixed_;      // per triangle
+  std::vector<std::uint64_t> features_;  // sorted keys of edges that stay
+  [[nodiscard]] double length() const noexcept { return wanted_.length(); }
+
+ private:
+  struct Segment {
+    Vec3d a, b;
+  };
+  // Vertex to triangles, rebuilt by each pass.
+  struct Rings {
+    std::vector<std::uint32_t> begin, item;
+    Rings(std::size_t vertices, const std::vector<Triangle>& t) : begin(vertices + 1, 0), item(3 * t.size()) {
+      for (const auto& c : t)
+        for (auto v : c) ++begin[v + 1];
+      for (std::size_t i = 0; i < vertices; ++i) begin[i + 1] += begin[i];
+      std::vector<std::uint32_t> next(begin.begin(), begin.end() - 1);
+      for (std::uint32_t i = 0; i < t.size(); ++i)
+        for (auto v : t[i]) item[next[v]++] = i;
+    }
+  };
+
+  [[nodiscard]] bool is_feature(std::uint64_t key) const noexcept {
+    return std::binary_search(features_.begin(), features_.end(), key);
+  }
+  [[nodiscard]] double area(std::uint32_t t) const noexcept {
+    return area_vector(p_[t_[t][0]], p_[t_[t][1]], p_[t_[t][2]]).norm();
+  }
+  [[nodiscard]] double uniform_length(double vertices) const {
+    double sum = 0;
+    for (std::uint32_t t = 0; t < t_.size(); ++t) sum += area(t);
+    return std::sqrt(2 / std::sqrt(3.0) * sum / vertices);
+  }
+
+  void measure() { wanted_.measure(p_, t_, fixed_, features_); }
+
+  void decimate(bool uniform) {
+    for (int i = 0; i < 60; ++i) {
+      const std::size_t before = t_.size();
+      collapse(uniform);
+      if (double(before - t_.size()) < 0.01 * double(before)) break;
+    }
+  }
+
+  void split() {
+    measure();
+    std::vector<MeshEdge> edges = mesh_edges(t_, "Remesher");
+    const auto ratio = [&](const MeshEdge& e) {
+      return (p_[e.a()] - p_[e.b()]).norm() / wanted_(e.a(), e.b());
+    };
+    std::vector<std::pair<double, std::uint32_t>> order;
+    for (std::uint32_t e = 0; e < edges.size(); ++e)
+      if (const double r = ratio(edges[e]); r > 4.0 / 3.0) order.push_back({-r, e});
+    std::sort(order.begin(), order.end());
+    std::vector<std::uint8_t> locked(t_.size(), 0);
+    for (const auto& [minus_ratio, e] : order) {
+      const MeshEdge& edge = edges[e];
+      if (locked[edge.triangle[0]] || locked[edge.triangle[1]]) continue;
+      const auto m = static_cast<std::uint32_t>(p_.size());
+      const bool feature = is_feature(edge.key);
+      const Vec3d middle = 0.5 * (p_[edge.a()] + p_[edge.b()]);
+      p_.push_back(feature ? project_line(middle) : surface_.project(middle));
+      for (int s = 0; s < 2; ++s) {
+        const std::uint32_t t = edge.triangle[s];
+        const std::uint32_t c = edge.corner[s];
+        locked[t] = 1;
+        Triangle other = t_[t];
+        t_[t][(c + 1) % 3] = m;
+        other[c] = m;
+        t_.push_back(other);
+        fixed_.push_back(fixed_[t]);
+      }
+      if (feature) {
+        features_.erase(std::lower_bound(features_.begin(), features_.end(), edge.key));
+        for (std::uint32_t end : {edge.a(), edge.b()}) {
+          const std::uint64_t key = edge_key(m, end);
+          features_.insert(std::lower_bound(features_.begin(), features_.end(), key), key);
+        }
+      }
+    }
+  }
+
+  // 0: inside a smooth part, 1: on a feature line, 2: end, corner or crossing of lines.
+  [[nodiscard]] std::vector<std::uint8_t> ranks() const {
+    std::vector<std::uint8_t> count(p_.size(), 0);
+    std::vector<std::array<std::uint32_t, 2>> ends(p_.size());
+    const auto add = [&](std::uint32_t v, std::uint32_t w) {
+      if (count[v] < 2) ends[v][count[v]] = w;
+      if (count[v] < 3) ++count[v];
+    };
+    for (std::uint64_t key : features_) {
+      const auto a = static_cast<std::uint32_t>(key >> 32), b = static_cast<std::uint32_t>(key);
+      add(a, b);
+      add(b, a);
+    }
+    for (std::uint32_t v = 0; v < p_.size(); ++v) {
+      if (count[v] == 0) continue;
+      // A line that turns by more than 40 degrees has a corner there.
+      const bool smooth =
+          count[v] == 2 && (p_[v] - p_[ends[v][0]]).normalized().dot((p_[ends[v][1]] - p_[v]).normalized()) >
+                               SmoothSurface::crease_cosine;
+      count[v] = smooth ? 1 : 2;
+    }
+    return count;
+  }
+
+  void collapse(bool uniform) {
+    if (!uniform) measure();
+    const std::vector<MeshEdge> edges = mesh_edges(t_, "Remesher");
+    const Rings rings(p_.size(), t_);
+    const std::vector<std::uint8_t> rank = ranks();
+    std::vector<std::pair<double, std::uint32_t>> order;
+    for (std::uint32_t e = 0; e < edges.size(); ++e)
+      if (const double r = (p_[edges[e].a()] - p_[edges[e].b()]).norm() / wanted_(edges[e].a(), edges[e].b());
+          r < 0.8)
+        order.push_back({r, e});
+    std::sort(order.begin(), order.end());
+    std::vector<std::uint8_t> locked(p_.size(), 0), dead(t_.size(), 0);
+    std::vector<std::uint32_t> moved(p_.size());
+    for (std::uint32_t v = 0; v < moved.size(); ++v) moved[v] = v;
+    for (const auto& [ratio, e] : order) {
+      const std::uint32_t a = edges[e].a(), b = edges[e].b();
+      if (locked[a] || locked[b]) continue;
+      const bool feature = is_feature(edges[e].key);
+      const bool done = rank[a] <= rank[b] ? try_collapse(a, b, feature, rank, rings, locked, dead, moved)
+                                           : try_collapse(b, a, feature, rank, rings, locked, dead, moved);
+      if (!done && rank[a] == rank[b]) try_collapse(b, a, feature, rank, rings, locked, dead, moved);
+    }
+    std::size_t kept = 0;
+    for (std::size_t t = 0; t < t_.size(); ++t) {
+      if (dead[t]) continue;
+      t_[kept] = t_[t];
+      fixed_[kept++] = fixed_[t];
+    }
+    t_.resize(kept);
+    fixed_.resize(kept);
+    for (auto& key : features_) key = edge_key(moved[key >> 32], moved[key & 0xffffffffu]);
+    std::erase_if(features_, [](std::uint64_t key) { return (key >> 32) == (key & 0xffffffffu); });
+    std::sort(features_.begin(), features_.end());
+    features_.erase(std::unique(features_.begin(), features_.end()), features_.end());
+    compact();
+  }
+
+  // Moves v into u and removes the two triangles between them, if the surface stays a good one.
+  bool try_collapse(std::uint32_t v, std::uint32_t u, bool feature, const std::vector<std::uint8_t>& rank,
+                    const Rings& rings, std::vector<std::uint8_t>& locked, std::vector<std::uint8_t>& dead,
+                    std::vector<std::uint32_t>& moved) {
+    if (rank[v] == 2 || (rank[v] == 1 && !feature)) return false;
+    std::uint32_t common = 0, shared = 0, far_end = ~0u;
+    for (std::uint32_t i = rings.begin[v]; i < rings.begin[v + 1]; ++i) {
+      const Triangle& t = t_[rings.item[i]];
+      bool has_u = false;
+      for (auto w : t) {
+        if (locked[w]) return false;
+        has_u = has_u || w == u;
+        if (w != v && w != u && is_feature(edge_key(v, w))) far_end = w;
+      }
+      if (has_u) {
+        ++shared;
+        continue;
+      }
+      // The triangle after the move: same side, not longer than wanted, no sliver.
+      Vec3d q[3];
+      for (int c = 0; c < 3; ++c)
+        q[c] = p_[t[static_cast<std::size_t>(c)] == v ? u : t[static_cast<std::size_t>(c)]];
+      const Vec3d before = area_vector(p_[t[0]], p_[t[1]], p_[t[2]]), after = area_vector(q[0], q[1], q[2]);
+      const double longest = std::sqrt((std::max)(
+          {(q[0] - q[1]).squaredNorm(), (q[1] - q[2]).squaredNorm(), (q[2] - q[0]).squaredNorm()}));
+      if (after.norm() < 0.05 * longest * longest && after.norm() < before.norm()) return false;
+      if (before.dot(after) < 0.5 * before.norm() * after.norm()) return false;
+      const double was =
+          std::sqrt((std::max)({(p_[t[0]] - p_[t[1]]).squaredNorm(), (p_[t[1]] - p_[t[2]]).squaredNorm(),
+                                (p_[t[2]] - p_[t[0]]).squaredNorm()}));
+      if (longest > 4.0 / 3.0 * wanted_(u) && longest > was) return false;
+    }
+    if (shared != 2) return false;
+    for (std::uint32_t i = rings.begin[v]; i < rings.begin[v + 1]; ++i) {
+      for (auto w : t_[rings.item[i]]) {
+        if (w == v || w == u) continue;
+        for (std::uint32_t j = rings.begin[u]; j < rings.begin[u + 1]; ++j) {
+          const Triangle& t = t_[rings.item[j]];
+          if (t[0] == w || t[1] == w || t[2] == w) {
+            if (w == far_end && rank[v] == 1) return false;
+            ++common;
+          }
+        }
+      }
+    }
+    // Each of the two common neighbours is met twice around v (its two triangles) and twice around u.
+    if (common != 8) return false;
+    for (std::uint32_t i = rings.begin[v]; i < rings.begin[v + 1]; ++i) {
+      Triangle& t = t_[rings.item[i]];
+      bool has_u = false;
+      for (auto& w : t) {
+        has_u = has_u || w == u;
+        locked[w] = 1;
+      }
+      if (has_u) {
+        dead[rings.item[i]] = 1;
+      } else {
+        for (auto& w : t)
+          if (w == v) w = u;
+      }
+    }
+    locked[u] = 1;
+    moved[v] = u;
+    return true;
+  }
+
+  void flip() {
+    const std::vector<MeshEdge> edges = mesh_edges(t_, "Remesher");
+    std::vector<std::uint64_t> keys;
+    for (const auto& e : edges) keys.push_back(e.key);
+    std::vector<std::uint8_t> locked(t_.size(), 0);
+    for (const auto& e : edges) {
+      if (locked[e.triangle[0]] || locked[e.triangle[1]] || is_feature(e.key)) continue;
+      Triangle &l = t_[e.triangle[0]], &r = t_[e.triangle[1]];
+      const std::uint32_t a = l[e.corner[0]], b = l[(e.corner[0] + 1u) % 3], c = l[(e.corner[0] + 2u) % 3],
+                          d = r[(e.corner[1] + 2u) % 3];
+      const auto angle = [&](std::uint32_t at) {
+        const Vec3d u = p_[a] - p_[at], v = p_[b] - p_[at];
+        return std::atan2(u.cross(v).norm(), u.dot(v));
+      };
+      if (angle(c) + angle(d) < 3.2) continue;  // Delaunay, with a margin so that flips end
+      if (std::binary_search(keys.begin(), keys.end(), edge_key(c, d))) continue;
+      const Vec3d n0 = area_vector(p_[a], p_[b], p_[c]) + area_vector(p_[b], p_[a], p_[d]);
+      const Vec3d n1 = area_vector(p_[a], p_[d], p_[c]), n2 = area_vector(p_[d], p_[b], p_[c]);
+      if (n1.dot(n0) < 0.8 * n1.norm() * n0.norm() || n2.dot(n0) < 0.8 * n2.norm() * n0.norm()) continue;
+      l = {a, d, c};
+      r = {d, b, c};
+      locked[e.triangle[0]] = locked[e.triangle[1]] = 1;
+      const std::uint64_t key = edge_key(c, d);
+      keys.insert(std::lower_bound(keys.begin(), keys.end(), key), key);
+    }
+  }
+
+  [[nodiscard]] Vec3d project_line(const Vec3d& x) const noexcept {
+    Vec3d best = x;
+    double distance = (std::numeric_limits<double>::max)();
+    for (const Segment& s : segments_) {
+      const Vec3d d = s.b - s.a;
+      const double l2 = d.squaredNorm();
+      const double u = l2 > 0 ? std::clamp(d.dot(x - s.a) / l2, 0.0, 1.0) : 0.0;
+      const Vec3d q = s.a + u * d;
+      if ((q - x).squaredNorm() < distance) {
+        distance = (q - x).squaredNorm();
+        best = q;
+      }
+    }
+    return best;
+  }
+
+  void relax() {
+    measure();
+    const Rings rings(p_.size(), t_);
+    const std::vector<std::uint8_t> rank = ranks();
+    for (std::uint32_t v = 0; v < p_.size(); ++v) {
+      if (rank[v] == 2) continue;
+      Vec3d sum = Vec3d::Zero();
+      double weight = 0;
+      for (std::uint32_t i = rings.begin[v]; i < rings.begin[v + 1]; ++i) {
+        for (auto w : t_[rings.item[i]]) {
+          if (w == v || (rank[v] == 1 && !is_feature(edge_key(v, w)))) continue;
+          const double l = wanted_(v, w);
+          sum += (p_[w] - p_[v]) / l;  // shorter edges where they are wanted
+          weight += 1 / l;
+        }
+      }
+      if (!(weight > 0)) continue;
+      const Vec3d target = p_[v] + 0.7 * sum / weight;
+      const Vec3d old = p_[v], moved = rank[v] == 1 ? project_line(target) : surface_.project(target);
+      bool good = true;
+      for (std::uint32_t i = rings.begin[v]; i < rings.begin[v + 1] && good; ++i) {
+        const Triangle& t = t_[rings.item[i]];
+        const Vec3d before = area_vector(p_[t[0]], p_[t[1]], p_[t[2]]);
+        p_[v] = moved;
+        const Vec3d after = area_vector(p_[t[0]], p_[t[1]], p_[t[2]]);
+        p_[v] = old;
+        good = before.dot(after) > 0.5 * before.norm() * after.norm() && after.norm() > 0.2 * before.norm();
+      }
+      if (good) p_[v] = moved;
+    }
+  }
+
+  // Drops vertices without a triangle.
+  void compact() {
+    std::vector<std::uint32_t> number(p_.size(), ~0u);
+    for (const auto& t : t_)
+      for (auto v : t) number[v] = 0;
+    std::uint32_t count = 0;
+    for (std::uint32_t v = 0; v < p_.size(); ++v) {
+      if (number[v] == ~0u) continue;
+      number[v] = count;
+      p_[count] = p_[v];
+      ++count;
+    }
+    p_.resize(count);
+    wanted_.renumber(number, count);
+    for (auto& t : t_)
+      for (auto& v : t) v = number[v];
+    for (auto& key : features_) key = edge_key(number[key >> 32], number[key & 0xffffffffu]);
+    std::sort(features_.begin(), features_.end());
+  }
+
+  const SmoothSurface& surface_;
+  RemeshParams params_;
+  std::vector<Segment> segments_;
+  EdgeLength wanted_;
+};
+
+}  // namespace detail
+}  // namespace palpate

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file From the solve mesh's vertices to those of a display, under solved contacts. Per tick.
+///
+/// The field is quadratic over the solve mesh's triangles within 2.5 edges of a contact, elsewhere linear
+/// between raised vertices (bent_edges.hpp); within one edge of a patch the contact's own near field is taken
+/// at the vertex itself instead of its interpolant.
+
+#include <palpate/response/response_display.hpp>
+#include <palpate/response/tick/bent_edges.hpp>
+#include <palpate/response/tick/contact_system.hpp>
+#include <palpate/response/tick/pressed_sphere.hpp>
+
+#include <type_traits>
+
+namespace palpate::detail {
+
+/// What is drawn: solved contacts, their near fields, and those at the solve mesh's vertices, one contact
+/// after the other, by coordinate.
+template <std::size_t Capacity>
+struct DrawnContacts {
+  const ContactSystem<Capacity>& contact;
+  const std::array<ContactNear, Capacity>& near;
+  const float* own;
+  std::size_t count;
+};
+
+/// Holds the buffers; the field must outlive it.
+template <std::size_t Capacity>
+class ResponseDrawing {
+ public:
+  explicit ResponseDrawing(const ResponseField& field)
+      : field_(&field),
+        total_(4 * field.stride(), 0.f),
+        raised_(total_),
+        close_(whole<Lane>(field.mesh().triangles.size())),
+        bends_(field.bends(), field.stride()) {}
+
+  /// `total`: the field at the solve mesh's vertices, by coordinate.
+  void read(const float* total, const DrawnContacts<Capacity>& contacts) noexcept {
+    const std::size_t n = field_->stride();
+    for (std::size_t v = 0; v < n; v += lane_size)
+      store_by_fours(&total_[4 * v], lane_at(total + v), lane_at(total + n + v), lane_at(total + 2 * n + v));
+    const double d2 = contacts.contact.deepest2(contacts.count);
+    const auto bend_reach = static_cast<float>(2.5 * field_->mesh().length);
+    bends_.read(total, contacts.own, n, contacts.near, contacts.count, bend_reach);
+    bends_.raise({field_->coordinate(0), field_->coordinate(1), field_->coordinate(2)}, total_.data(),
+                 contacts.near, contacts.count, bend_reach, static_cast<float>(0.5 * std::sqrt(d2)),
+                 raised_.data());
+  }
+
+  /// emit(slot, u) with a lane of displacements from that slot on, until all of a display have theirs. An
+  /// `emit` that can be assigned is copied and put back.
+  template <class Emit>
+  void each(const ResponseDisplay& display, const DrawnContacts<Capacity>& contacts, Emit& emit) noexcept {
+    find_close(display, contacts);
+    spread(display, emit);
+    for (std::size_t i = 0; i < display.spans().size(); ++i)
+      if (is_close(display, i)) refine(display, i, contacts, emit);
+  }
+
+ private:
+  using Wide = FloatRegister;
+  using Bend = typename BentEdges<Capacity>::OfTriangle;
+  static constexpr std::uint32_t wide = entries<Wide>;
+
+  // Where near fields are exact.
+  [[nodiscard]] float reach() const noexcept { return static_cast<float>(field_->mesh().length); }
+  // Above 0 for a sphere that comes within reach of a contact. `S`: a number or a lane of them.
+  template <class S>
+  [[nodiscard]] PALPATE_INLINE S within_reach(const S& x, const S& y, const S& z, const S& radius,
+                                              const ContactNear& k) const noexcept {
+    const S rx = x - k.place.x(), ry = y - k.place.y(), rz = z - k.place.z(), most = radius + (k.a + reach());
+    return most * most - (rx * rx + ry * ry + rz * rz);
+  }
+  // Which spans have vertices within reach of a contact, or may have.
+  void find_close(const ResponseDisplay& display, const DrawnContacts<Capacity>& contacts) noexcept {
+    const ResponseDisplay::Spheres& around = display.around();
+    for (std::size_t i = 0; i < around.radius.size(); i += lane_size) {
+      const auto from = [i](const std::vector<float>& list) { return lane_at(&list[i]); };
+      const Lane x = from(around.x), y = from(around.y), z = from(around.z), radius = from(around.radius);
+      Lane inside = four(-1);
+      for (std::size_t c = 0; c < contacts.count; ++c)
+        inside = larger(inside, within_reach(x, y, z, radius, contacts.near[c]));
+      store_vector(&close_[i], inside);
+    }
+  }
+  [[nodiscard]] PALPATE_INLINE bool is_close(const ResponseDisplay& display,
+                                             std::size_t span) const noexcept {
+    return close_[span] > 0 && !field_->mesh().fixed_triangle[display.spans()[span].triangle];
+  }
+
+  // Linear over one triangle of the solve mesh: x, y, z at corner 0, and along the edges from it.
+  struct Linear {
+    Lane at0, edge1, edge2;
+    Linear() = default;
+    PALPATE_INLINE Linear(const Lane& corner0, const Lane& corner1, const Lane& corner2) noexcept
+        : at0(corner0), edge1(corner1 - corner0), edge2(corner2 - corner0) {}
+    template <class V>
+    [[nodiscard]] PALPATE_INLINE Axes<V> operator()(const V& b1, const V& b2) const noexcept {
+      return {at0[0] + b1 * edge1[0] + b2 * edge2[0], at0[1] + b1 * edge1[1] + b2 * edge2[1],
+              at0[2] + b1 * edge1[2] + b2 * edge2[2]};
+    }
+  };
+  // The same with the bends of the edges, where there are any.
+  struct Interpolant {
+    Linear linear;
+    Bend bend;
+    bool bent;
+    template <class V>
+    [[nodiscard]] PALPATE_INLINE Axes<V> operator()(const V& b1, const V& b2) const noexcept {
+      Axes<V> u = linear(b1, b2);
+      if (bent) u += bend(b1, b2);
+      return u;
+    }
+  };
+  [[nodiscard]] PALPATE_INLINE Interpolant total_over(std::size_t triangle) const noexcept {
+    const auto& [p, q, r] = field_->mesh().triangles[triangle];
+    Interpolant u;
+    u.linear = {lane_at(&raised_[4 * p]), lane_at(&raised_[4 * q]), lane_at(&raised_[4 * r])};
+    u.bent = !field_->mesh().fixed_triangle[triangle] && bends_.find(triangle, u.bend);
+    return u;
+  }
+  // The same of contact c's near field.
+  [[nodiscard]] Interpolant own_over(std::size_t triangle, const DrawnContacts<Capacity>& contacts,
+                                     std::size_t c) const noexcept {
+    const std::size_t n = field_->stride();
+    const auto at = [n, own = contacts.own + 3 * n * c](std::uint32_t v) {
+      return Lane{own[v], own[n + v], own[2 * n + v], 0};
+    };
+    const auto& [p, q, r] = field_->mesh().triangles[triangle];
+    Interpolant u;
+    u.linear = {at(p), at(q), at(r)};
+    u.bent = bends_.find_near(c, triangle, u.bend);
+    return u;
+  }
+
+  // All spans that are not close to a contact.
+  template <class Emit>
+  void spread(const ResponseDisplay& display, Emit& emit) const noexcept {
+    using Out = std::conditional_t<std::is_copy_assignable_v<Emit>, Emit, Emit&>;
+    Out out = emit;  // a copy is in registers: what it writes might be any of it otherwise
+    const float *const weight1 = display.b1(), *const weight2 = display.b2();
+    const std::span<const ResponseDisplay::Span> spans(display.spans());
+    for (std::size_t s = 0; s < spans.size(); ++s) {
+      if (is_close(display, s)) continue;
+      const ResponseDisplay::Span span = spans[s];
+      const Interpolant total = total_over(span.triangle);
+      if (total.bent) {
+        for (std::uint32_t i = span.begin; i < span.end; i += lane_size)
+          out(i, total(lane_at(weight1 + i), lane_at(weight2 + i)));
+      } else {  // most: a loop without the question
+        for (std::uint32_t i = span.begin; i < span.end; i += lane_size)
+          out(i, total.linear(lane_at(weight1 + i), lane_at(weight2 + i)));
+      }
+    }
+    if constexpr (std::is_copy_assignable_v<Emit>) emit = out;
+  }
+
+  // One that is: the same with the near fields exact, fading to their interpolants at the end of their reach.
+  template <class Emit>
+  void refine(const ResponseDisplay& display, std::size_t s, const DrawnContacts<Capacity>& contacts,
+              Emit& emit) const noexcept {
+    const ResponseDisplay::Span& span = display.spans()[s];
+    const Refined refined(*this, display, s, contacts);
+    std::uint32_t i = span.begin;
+    for (; i + wide <= span.end; i += wide) refine_at<Wide>(display, i, refined, contacts, emit);
+    if constexpr (!std::is_same_v<Wide, Lane>)
+      if (i < span.end) refine_at<Lane>(display, i, refined, contacts, emit);
+  }
+  // What is the same all over a span.
+  struct Refined {
+    Interpolant total;
+    FixedVector<std::uint32_t, Capacity> close;
+    std::array<Interpolant, Capacity> own;
+
+    Refined(const ResponseDrawing& drawing, const ResponseDisplay& display, std::size_t s,
+            const DrawnContacts<Capacity>& contacts) noexcept {
+      const std::uint32_t triangle = display.spans()[s].triangle;
+      total = drawing.total_over(triangle);
+      const ResponseDisplay::Spheres& around = display.around();
+      for (std::uint32_t c = 0; c < contacts.count; ++c) {
+        if (!(drawing.within_reach(around.x[s], around.y[s], around.z[s], around.radius[s],
+                                   contacts.near[c]) > 0))
+          continue;
+        close.push_back(c);
+        own[c] = drawing.own_over(triangle, contacts, c);
+      }
+    }
+  };
+  // A register of slots from i on.
+  template <class V, class Emit>
+  PALPATE_INLINE void refine_at(const ResponseDisplay& display, std::uint32_t i, const Refined& span,
+                                const DrawnContacts<Capacity>& contacts, Emit& emit) const noexcept {
+    const auto from = [i](const float* list) { return load_vector<V>(list + i); };
+    const V b1 = from(display.b1()), b2 = from(display.b2());
+    const Axes<V> at{from(display.x()), from(display.y()), from(display.z())};
+    Axes<V> u = span.total(b1, b2);
+    const float reach = this->reach();
+    bool held = false;
+    for (auto c : span.close) {
+      const ContactNear& k = contacts.near[c];
+      const V rx = at.x - k.place.x(), ry = at.y - k.place.y(), rz = at.z - k.place.z(),
+              r2 = rx * rx + ry * ry + rz * rz;
+      const float nearest = least_of(r2);
+      if (nearest >= (reach + k.a) * (reach + k.a)) continue;
+      held = held || nearest < 5 * k.a * k.a;  // beyond what a ball's patch can reach
+      const V weight = between(V((reach + k.a - root(r2)) * (4 / reach)), 0, 1);
+      const Axes<V> exact = k(at), drawn = span.own[c](b1, b2);
+      u.x += weight * (exact.x - drawn.x);
+      u.y += weight * (exact.y - drawn.y);
+      u.z += weight * (exact.z - drawn.z);
+    }
+    if (held)
+      for (auto c : span.close) hold(contacts.contact[c], contacts.near[c], at, reach, u);
+    detail::each_four<V>([&](auto k) PALPATE_INLINE_LAMBDA {
+      emit(i + k, Lane3{four_of<k>(u.x), four_of<k>(u.y), four_of<k>(u.z)});
+    });
+  }
+
+  // The patch moves by d and turns with the tool, as far as the contact grips; beneath a ball the surface
+  // lies on it.
+  template <class V>
+  static void hold(const PlacedContact& c, const ContactNear& near, const Axes<V>& at, float reach,
+                   Axes<V>& u) noexcept {
+    const V rx = at.x - near.place.x(), ry = at.y - near.place.y(), rz = at.z - near.place.z(),
+            r2 = rx * rx + ry * ry + rz * rz;
+    if (c.ball > 0) {
+      for (std::uint32_t l = 0; l < entries<V>; ++l) {
+        if (r2[l] > 4 * near.a * near.a) continue;
+        Vec3<double> v(double(u.x[l]), double(u.y[l]), double(u.z[l]));
+        rest_on_ball(c, Vec3<double>(double(at.x[l]), double(at.y[l]), double(at.z[l])), double(reach), v);
+        u.x[l] = static_cast<float>(v[0]), u.y[l] = static_cast<float>(v[1]),
+        u.z[l] = static_cast<float>(v[2]);
+      }
+      return;
+    }
+    // Over to the field outside within a fiftieth of the radius: a vertex that comes in moves fast, and does
+    // not jump.
+    const Vec3<float> d = c.d.template cast<float>();
+    const V inside = between(V(51.f - 50.f / near.a * root(r2)), 0, 1) * static_cast<float>(c.grip);
+    Axes<V> to{all_of<V>(d.x()), all_of<V>(d.y()), all_of<V>(d.z())};
+    if (c.is_turned()) {
+      const Mat3<float>& t = near.turned;
+      to.x += t(0, 0) * rx + t(0, 1) * ry + t(0, 2) * rz;
+      to.y += t(1, 0) * rx + t(1, 1) * ry + t(1, 2) * rz;
+      to.z += t(2, 0) * rx + t(2, 1) * ry + t(2, 2) * rz;
+    }
+    u.x += inside * (to.x - u.x);
+    u.y += inside * (to.y - u.y);
+    u.z += inside * (to.z - u.z);
+  }
+
+  const ResponseField* field_;
+  std::vector<float> total_;   // the field at the solve mesh's vertices, four numbers each
+  std::vector<float> raised_;  // the same, raised where its bends are left out
+  std::vector<float> close_;   // by span of the display: above 0 within reach of a contact
+  BentEdges<Capacity> bends_;
+};
+
+}  // namespace palpate::detail

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file Quadratic displacement without more unknowns: how far u at the middle of an edge lies from the mean
+/// of its ends. Set-up only.
+///
+///     b = u(m) - (u(p) + u(q)) / 2 = -1/8 e^T K e ,   e = q - p
+///
+/// K: second derivatives of u in the tangent plane, from the quadratic that fits u best at the neighbours of
+/// two rings on the same smooth part; mean over the edge's ends and sides. Exact where u is quadratic in a
+/// plane; 0 where it is linear. With linear u alone a bar or plate that bends is 10 to 900 % wrong
+/// (docs/accuracy.md). The idea is that of gradient recovery, [zienkiewicz1992].
+///
+/// Where u is drawn linearly nevertheless, it is raised at the vertices, so that what the bends leave out is
+/// right in the mean:
+///     r_v = sum int phi_v 4 phi_c phi_d b_cd dS / sum int phi_v dS     over the triangles around v, b by K there
+/// Of a quadratic's error over equal triangles a quarter is left where it bends in all directions alike, two
+/// fifths where in one.
+
+#include <palpate/core/cholesky.hpp>
+#include <palpate/response/setup/element_mesh.hpp>
+
+namespace palpate::detail {
+
+struct VertexWeight {
+  std::uint32_t vertex;
+  double weight;
+};
+
+/// For every edge of a solve mesh, weights with b = sum weight u(vertex); for every vertex, those of r. They
+/// sum to 0.
+class EdgeBend {
+ public:
+  explicit EdgeBend(const SolveMesh& m) : of_(m.triangles.size()) {
+    const std::vector<MeshEdge> edges = mesh_edges(m.triangles, "EdgeBend");
+    const std::vector<Fit> fits = fit_nodes(m);
+    weights_.resize(edges.size());
+    for (std::uint32_t i = 0; i < edges.size(); ++i) {
+      const MeshEdge& edge = edges[i];
+      const Vec3d e = m.vertices[edge.b()] - m.vertices[edge.a()];
+      std::vector<VertexWeight> all;
+      for (std::size_t side = 0; side < 2; ++side) {
+        const auto& nodes = m.nodes_of[edge.triangle[side]];
+        const std::uint32_t c = edge.corner[side];
+        of_[edge.triangle[side]][c] = i;
+        for (auto k : {nodes[c], nodes[(c + 1) % 3]}) {  // twice where the edge is smooth
+          const Vec3d t1 = perpendicular(m.nodes[k].normal), t2 = m.nodes[k].normal.cross(t1);
+          const double p = e.dot(t1), q = e.dot(t2);
+          double sum = 0;
+          for (const auto& [vertex, K] : fits[k]) {
+            const double w = -0.125 / 4 * (p * p * K[0] + 2 * p * q * K[1] + q * q * K[2]);
+            all.push_back({vertex, w});
+            sum += w;
+          }
+          all.push_back({m.nodes[k].vertex, -sum});
+        }
+      }
+      std::sort(all.begin(), all.end(), [](const auto& l, const auto& r) { return l.vertex < r.vertex; });
+      for (const VertexWeight& w : all) {
+        if (weights_[i].empty() || weights_[i].back().vertex != w.vertex)
+          weights_[i].push_back(w);
+        else
+          weights_[i].back().weight += w.weight;
+      }
+    }
+    find_raise(m, fits);
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return weights_.size(); }
+  [[nodiscard]] const std::vector<VertexWeight>& operator[](std::size_t edge) const noexcept {
+    return weights_[edge];
+  }
+  /// r at vertex v; empty where it is fixed.
+  [[nodiscard]] const std::vector<VertexWeight>& raise(std::size_t v) const noexcept { return raise_[v]; }
+  /// Number of the edge from corner c to c + 1 of triangle t.
+  [[nodiscard]] std::uint32_t edge(std::size_t t, std::size_t c) const noexcept { return of_[t][c]; }
+
+ private:
+  // Second derivatives at a node (11, 12, 22) by the displacement of each neighbour less the node's own
+  // [1/m^2].
+  using Fit = std::vector<std::pair<std::uint32_t, Vec3d>>;
+
+  struct Row {  // one neighbour's: its displacement is by . (slopes, second derivatives)
+    std::uint32_t vertex;
+    double weight;
+    std::array<double, 5> by;
+  };
+
+  // Weighted least squares, 1/d^2. Where the neighbours do not tell (two rows across a narrow strip), a small
+  // penalty on the second derivatives makes them small: 0.05^2 of the slopes' weight, 0.3 % of a derivative
+  // that is well seen.
+  [[nodiscard]] static std::vector<Fit> fit_nodes(const SolveMesh& m) {
+    constexpr double penalty = 0.05 * 0.05;
+    std::vector<std::vector<std::uint32_t>> ring(m.nodes.size());
+    for (const auto& t : m.nodes_of)
+      for (std::size_t c = 0; c < 3; ++c) {
+        add_once(ring[t[c]], t[(c + 1) % 3]);
+        add_once(ring[t[c]], t[(c + 2) % 3]);
+      }
+    std::vector<Fit> fits(m.nodes.size());
+    for (std::uint32_t k = 0; k < m.nodes.size(); ++k) {
+      std::vector<std::uint32_t> near = ring[k];
+      for (auto j : ring[k])
+        for (auto l : ring[j]) add_once(near, l);
+      const SolveMesh::Node& node = m.nodes[k];
+      const Vec3d &x = m.vertices[node.vertex], t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
+      SpdSystem<5> A{};
+      std::vector<Row> rows;
+      for (auto j : near) {
+        const double facing = m.nodes[j].normal.dot(node.normal);
+        if (m.nodes[j].vertex == node.vertex || facing < 0.3) continue;  // round the corner
+        const Vec3d d = (m.vertices[m.nodes[j].vertex] - x) / node.size;
+        const double p = d.dot(t1), q = d.dot(t2), w = facing / d.squaredNorm();
+        const Row row{m.nodes[j].vertex, w * w, {p, q, 0.5 * p * p, p * q, 0.5 * q * q}};
+        for (std::size_t r = 0; r < 5; ++r)
+          for (std::size_t c = 0; c <= r; ++c) A.at(r, c) += row.weight * row.by[r] * row.by[c];
+        rows.push_back(row);
+      }
+      const double slopes = A.at(0, 0) + A.at(1, 1) + 1e-30;
+      for (std::size_t r = 0; r < 5; ++r) A.at(r, r) += (r < 2 ? 1e-9 : penalty) * slopes;
+      if (!A.factor(5)) fail_at("EdgeBend", "neighbours must be finite", "node", k);
+      for (const Row& row : rows) {
+        for (std::size_t r = 0; r < 5; ++r) A.b[r] = row.weight * row.by[r];
+        A.substitute(5);
+        fits[k].push_back({row.vertex, Vec3d(A.b[2], A.b[3], A.b[4]) / (node.size * node.size)});
+      }
+    }
+    return fits;
+  }
+
+  void find_raise(const SolveMesh& m, const std::vector<Fit>& fits) {
+    // r times the vertex's mass = sum by . K over its nodes.
+    std::vector<Vec3d> by(m.nodes.size(), Vec3d::Zero());
+    std::vector<double> mass(m.vertices.size(), 0);
+    for (std::size_t t = 0; t < m.triangles.size(); ++t) {
+      const auto& corner = m.triangles[t];
+      const auto edge = [&](std::size_t c) -> Vec3d {
+        return m.vertices[corner[(c + 1) % 3]] - m.vertices[corner[c]];
+      };
+      const double area = 0.5 * edge(0).cross(edge(1)).norm();
+      for (std::size_t c = 0; c < 3; ++c) {
+        const SolveMesh::Node& node = m.nodes[m.nodes_of[t][c]];
+        const Vec3d t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
+        for (std::size_t k = 0; k < 3; ++k) {
+          const double p = edge(k).dot(t1), q = edge(k).dot(t2),
+                       share = (k == (c + 1) % 3 ? 1 : 2) * area / 15;
+          by[m.nodes_of[t][c]] -= 0.125 * share * Vec3d(p * p, 2 * p * q, q * q);
+        }
+        mass[corner[c]] += area / 3;
+      }
+    }
+    raise_.resize(m.vertices.size());
+    for (std::size_t k = 0; k < m.nodes.size(); ++k) {
+      const std::uint32_t v = m.nodes[k].vertex;
+      if (m.fixed_vertex[v]) continue;
+      double sum = 0;
+      for (const auto& [vertex, K] : fits[k]) {
+        raise_[v].push_back({vertex, by[k].dot(K) / mass[v]});
+        sum += raise_[v].back().weight;
+      }
+      raise_[v].push_back({v, -sum});
+    }
+  }
+
+  std::vector<std::array<std::uint32_t, 3>> of_;
+  std::vector<std::vector<VertexWeight>> weights_, raise_;
+};
+
+}  // namespace palpate::detail

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file Where a response field can be touched: the solve mesh's surface, cut into triangles between places
+/// of loads. Made by load_places.hpp.
+
+#include <palpate/response/setup/smooth_surface.hpp>
+
+#include <optional>
+#include <span>
+
+namespace palpate {
+
+/// A place among the nodes: weights >= 0 that sum to 1. Continuous in the point it was found from, near the
+/// surface.
+struct TouchPlace {
+  std::uint32_t triangle = 0;
+  std::array<std::uint32_t, 3> node{};
+  Vec3<double> weight = Vec3<double>::UnitX();
+  double distance2 = 0;  ///< squared, from the point to the place [m^2]
+};
+
+/// A place where a load acts, on the surface of the solve mesh.
+struct TouchNode {
+  Vec3<double> normal;                      ///< outward, unit
+  Vec3<double> source;                      ///< the place [m]
+  double size = 0;                          ///< mean length of the solve mesh's edges around [m]
+  double spacing = 0;                       ///< mean distance to the nodes around [m]
+  std::uint32_t triangle = 0;               ///< of the solve mesh, that holds the place
+  Vec3<float> part = Vec3<float>::UnitX();  ///< weights of its corners
+  bool crease = false;                      ///< on a crease, or drawn inwards from one
+};
+
+/// The whole surface of the solve mesh, fixed region included: closed, so that the place of a point of the
+/// surface never jumps, at a rim or across a thin part. Its nodes, in this order:
+///
+/// | nodes  | where                                                         | field of a load                                |
+/// |--------|---------------------------------------------------------------|------------------------------------------------|
+/// | solved | nodes of the solve mesh with a free triangle, middles of edges | boundary equation                             |
+/// | held   | the other nodes                                               | none: w = -u_near                              |
+/// | edge   | vertices of the solve mesh where smooth parts meet            | mean of the loads of the nodes that meet there |
+///
+/// Only solved nodes have columns; the others' loads are shared among them (`shares`), and what is left falls
+/// on what is held and moves nothing. At most three parts of an edge node count.
+///
+/// The loads of a crease's nodes lie inside their own parts; a contact that crosses a crease goes over
+/// gradually from one part's nodes to the edge's and on to the other part's.
+class TouchMesh {
+ public:
+  /// Part of a node's load.
+  struct Share {
+    std::uint32_t node;  ///< solved
+    float weight;
+  };
+  static constexpr std::size_t most_parts = 3;
+
+  TouchMesh() = default;
+
+  TouchMesh(std::vector<TouchNode> nodes, std::vector<std::array<std::uint32_t, 3>> triangles,
+            std::vector<std::uint32_t> share_begin, std::vector<Share> shares)
+      : nodes_(std::move(nodes)),
+        triangles_(std::move(triangles)),
+        solved_(nodes_.size() + 1 - share_begin.size()),
+        share_begin_(std::move(share_begin)),
+        shares_(std::move(shares)) {
+    index();
+  }
+
+  /// Number of solved nodes.
+  [[nodiscard]] std::size_t solved() const noexcept { return solved_; }
+  /// Solved nodes that share the load of a node that is not solved.
+  [[nodiscard]] std::span<const Share> shares(std::size_t k) const noexcept {
+    const std::uint32_t first = share_begin_[k - solved_];
+    return {shares_.data() + first, share_begin_[k - solved_ + 1] - first};
+  }
+  /// By node that is not solved, the first of its shares, and one more; the shares.
+  [[nodiscard]] const std::vector<std::uint32_t>& share_begin() const noexcept { return share_begin_; }
+  [[nodiscard]] const std::vector<Share>& all_shares() const noexcept { return shares_; }
+  [[nodiscard]] const std::vector<TouchNode>& nodes() const noexcept { return nodes_; }
+  [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& triangles() const noexcept {
+    return triangles_;
+  }
+
+  /// The place x = sum weight (source + d normal) with d the distance along the interpolated normal; the
+  /// nearest place where there is none close by. The nearest place of a point over a reflex edge jumps, this
+  /// one does not. Where the search starts depends on x alone, so the answer has no memory.
+  [[nodiscard]] TouchPlace locate(const Vec3<double>& x) const noexcept {
+    const auto at = bvh_->closest(x, start_[cell(x)]);
+    TouchPlace place{at.triangle, triangles_[at.triangle], at.weight, at.distance2};
+    if (at.distance2 > 0) follow_normals(x, at.position, place);
+    return place;
+  }
+
+ private:
+  static constexpr int cells = 16;  // along each axis
+
+  // From the nearest place over the triangles' prisms, which share their sides. Leaves `place` alone if none
+  // holds x.
+  void follow_normals(const Vec3<double>& x, const Vec3<double>& nearest, TouchPlace& place) const noexcept {
+    std::uint32_t t = place.triangle;
+    Vec3<double> n = Vec3<double>::Zero();
+    for (std::size_t c = 0; c < 3; ++c) n += place.weight[Eigen::Index(c)] * nodes_[place.node[c]].normal;
+    double d = (x - nearest).dot(n);
+    for (int step = 0; step < 12; ++step) {
+      const TouchNode &p = nodes_[triangles_[t][0]], &q = nodes_[triangles_[t][1]],
+                      &r = nodes_[triangles_[t][2]];
+      const Vec3<double> dq = q.normal - p.normal, dr = r.normal - p.normal;
+      Vec3<double> eq, er, to, area;
+      const auto raise = [&] {
+        eq = q.source - p.source + d * dq;
+        er = r.source - p.source + d * dr;
+        to = x - p.source - d * p.normal;
+        area = eq.cross(er);
+      };
+      raise();
+      for (int newton = 0; newton < 4; ++newton) {  // x in the plane of the raised triangle
+        const double slope = (dq.cross(er) + eq.cross(dr)).dot(to) - area.dot(p.normal),
+                     height = area.dot(to);
+        if (!(slope < 0)) return;
+        d -= height / slope;
+        raise();
+        if (height * height < 1e-10 * slope * slope * eq.squaredNorm()) break;  // what is left: its square
+      }
+      const double a2 = area.squaredNorm();
+      if (!(a2 > 0)) return;
+      Vec3<double> l(0, to.cross(er).dot(area) / a2, eq.cross(to).dot(area) / a2);
+      l[0] = 1 - l[1] - l[2];
+      Eigen::Index least = 0;
+      if (l.minCoeff(&least) > -1e-9) {
+        l = l.cwiseMax(0.0);
+        place = {t, triangles_[t], l / l.sum(), place.distance2};
+        return;
+      }
+      t = across_[t][static_cast<std::size_t>(least)];
+    }
+  }
+
+  void index() {
+    MeshData<double> mesh;
+    mesh.triangles = triangles_;
+    for (const auto& n : nodes_) mesh.vertices.push_back(n.source);
+    bvh_.emplace(mesh);
+    find_neighbours();
+    Vec3<double> high = low_ = mesh.vertices[0];
+    for (const auto& v : mesh.vertices) {
+      low_ = low_.cwiseMin(v);
+      high = high.cwiseMax(v);
+    }
+    const Vec3<double> size = ((high - low_) / cells).cwiseMax(1e-3 * (high - low_).maxCoeff() + 1e-30);
+    per_size_ = size.cwiseInverse();
+    start_.resize(cells * cells * cells);
+    for (int i = 0; i < cells; ++i)
+      for (int j = 0; j < cells; ++j)
+        for (int k = 0; k < cells; ++k) {
+          const Vec3<double> centre = low_ + Vec3<double>(i + 0.5, j + 0.5, k + 0.5).cwiseProduct(size);
+          start_[cell(centre)] = bvh_->closest(centre).triangle;
+        }
+  }
+  // The triangle beyond the edge opposite to each corner; itself where there is none.
+  void find_neighbours() {
+    struct Side {
+      std::uint64_t key;
+      std::uint32_t triangle, corner;
+    };
+    std::vector<Side> sides;
+    across_.resize(triangles_.size());
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+      across_[t] = {t, t, t};
+      for (std::uint32_t c = 0; c < 3; ++c)
+        sides.push_back({detail::edge_key(triangles_[t][(c + 1) % 3], triangles_[t][(c + 2) % 3]), t, c});
+    }
+    std::sort(sides.begin(), sides.end(), [](const Side& l, const Side& r) {
+      return l.key < r.key || (l.key == r.key && l.triangle < r.triangle);
+    });
+    for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
+      const Side &l = sides[i], &r = sides[i + 1];
+      if (l.key != r.key) continue;
+      across_[l.triangle][l.corner] = r.triangle;
+      across_[r.triangle][r.corner] = l.triangle;
+    }
+  }
+  [[nodiscard]] std::size_t cell(const Vec3<double>& x) const noexcept {
+    std::size_t at = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double s = (x[axis] - low_[axis]) * per_size_[axis];
+      at = at * cells + (s > 0 ? static_cast<std::size_t>((std::min)(s, cells - 0.5)) : 0);
+    }
+    return at;
+  }
+
+  std::vector<TouchNode> nodes_;
+  std::vector<std::array<std::uint32_t, 3>> triangles_;
+  std::size_t solved_ = 0;
+  std::vector<std::uint32_t> share_begin_{0};
+  std::vector<Share> shares_;
+  std::optional<TriangleBvh<double>> bvh_;
+  std::vector<std::array<std::uint32_t, 3>> across_;
+  std::vector<std::uint32_t> start_;  // per cell, a triangle near it
+  Vec3<double> low_ = Vec3<double>::Zero(), per_size_ = Vec3<double>::Ones();
+};
+
+}  // namespace palpate

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file A rigid frictionless sphere pressed into the body: the contact area grows with depth. Per tick.
+///
+/// The half-space's answer in series with the body's correction, d = (1 + k d_H/R) d_H + C_w F, l =
+/// ln((R+a)/(R-a)):
+///     d_H = (a/2) l - g a^4/(3 R^3),   F = E* ((a^2 + R^2) l/2 - a R - 8/15 g a^5/R^3),   E* = E/(1-nu^2)
+/// | symbol | name                                                                              | unit | range       |
+/// |--------|-----------------------------------------------------------------------------------|------|-------------|
+/// | R      | radius of the relative curvature, 2/R = 2/R_sphere + k1 + k2                      | m    | > 0         |
+/// | a      | radius of the contact                                                             | m    | [0, 0.95 R] |
+/// | d      | how deep the sphere is pressed                                                    | m    | <= 0: none  |
+/// | C_w    | normal compliance of the correction; < 0 where a layer lies on something stiff    | m/N  |             |
+/// | g      | of the gap's fourth power of r, what a sphere of radius R on a plane has too much | -    | [0, 1]      |
+/// | k      | softening by finite strain                                                        | -    | > -0.25     |
+/// k1, k2: the surface's principal curvatures. Limits: no friction; pressed along the normal; the depth is
+/// held where a = 0.95 R; what a body takes from d_H is held at half of it. Sources: [sneddon1965],
+/// [johnson1985] ch. 4.
+
+#include <palpate/core/scalar.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace palpate {
+
+/// What a pressed sphere feels.
+template <Real S>
+struct SphereForce {
+  S force = S(0);      ///< normal, >= 0 [N]
+  S stiffness = S(0);  ///< dF/dd [N/m]
+  S radius = S(0);     ///< of the contact [m]
+};
+
+/// Solves d(a) for a by Newton steps inside a bracket; d grows with a, so the root is single. `compliance`:
+/// C_w; `less`: g.
+template <Real S>
+[[nodiscard]] inline SphereForce<S> sphere_force(S depth, S R, S modulus, S compliance, S less = S(0),
+                                                 S softening = S(0)) noexcept {
+  if (!is_finite(depth) || !(depth > S(0)) || !is_finite(R) || !(R > S(0))) return {};
+  struct Value {
+    S load, by_load, depth, by_depth;  // F / R^2, d / R, and their derivatives by s = a / R
+  };
+  const S target = depth / R, series = compliance * R;
+  const auto at = [&](S s) {
+    const S l = std::log((S(1) + s) / (S(1) - s)), q = S(1) / (S(1) - s * s), s2 = s * s, s3 = s2 * s;
+    const S own = S(0.5) * s * l - less * s * s3 / S(3),
+            by_own = S(0.5) * l + s * q - S(4) / S(3) * less * s3;
+    Value v;
+    // Series where the difference cancels.
+    v.load = s < S(0.1) ? s3 * (S(4) / S(3) + s2 * (S(8) / S(15) + s2 * S(12) / S(35)))
+                        : S(0.5) * ((s2 + S(1)) * l - S(2) * s);
+    v.load = modulus * (v.load - S(8) / S(15) * less * s2 * s3);
+    v.by_load = modulus * (s * l + (s2 + S(1)) * q - S(1) - S(8) / S(3) * less * s2 * s2);
+    v.depth = own * (S(1) + softening * own);
+    v.by_depth = by_own * (S(1) + S(2) * softening * own);
+    const bool held = series * v.load < S(-0.5) * v.depth;
+    v.depth += held ? S(-0.5) * v.depth : series * v.load;
+    v.by_depth += held ? S(-0.5) * v.by_depth : series * v.by_load;
+    return v;
+  };
+  S low = 0, high = S(0.95), s = (std::min)(std::sqrt(target), S(0.9));
+  for (int i = 0; i < 40; ++i) {
+    const Value v = at(s);
+    (v.depth > target ? high : low) = s;
+    const S next = s - (v.depth - target) / v.by_depth, old = s;
+    s = next > low && next < high ? next : S(0.5) * (low + high);
+    if (std::abs(s - old) <= S(4) * std::numeric_limits<S>::epsilon() * s) break;
+  }
+  const Value v = at(s);
+  return {R * R * v.load, R * v.by_load / v.by_depth, R * s};
+}
+
+}  // namespace palpate

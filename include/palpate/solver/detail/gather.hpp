@@ -1,0 +1,331 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file From the tool's pose to the sums of its regions: one collector per topology, all with the same
+/// interface.
+///
+///     Sum<Force>                                      what adds up a region
+///     Status collect(object, tool, force, X, sums)    finds what touches and adds it up, one sum per slot
+///     slot(k), changed(), reset()                     the regions' identity
+
+#include <palpate/contact/detail/region_tracker.hpp>
+#include <palpate/contact/region_slot.hpp>
+#include <palpate/contact/region_sum.hpp>
+#include <palpate/contact/topology.hpp>
+#include <palpate/core/absent.hpp>
+#include <palpate/core/pose.hpp>
+#include <palpate/core/status.hpp>
+#include <palpate/detection/candidates.hpp>
+#include <palpate/geometry/concept.hpp>
+#include <palpate/law/map/concept.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+#include <vector>
+
+namespace palpate {
+
+namespace detail {
+/// Status bits of a point at `depth` [m].
+template <ContactSurface Object, ForceModel Force>
+[[nodiscard]] inline Status depth_status(const Object& object, const Force& force,
+                                         typename Object::Scalar depth) noexcept {
+  Status status = Status::ok;
+  if (depth > object.reach()) status |= Status::beyond_reach;
+  if (depth > force.max_depth()) status |= Status::beyond_stable;
+  return status;
+}
+
+/// Two leaves as one, and each of them again.
+template <Real S>
+[[nodiscard]] inline PointLanes<S, 2 * lane_count> joined(const PointLanes<S>& a,
+                                                          const PointLanes<S>& b) noexcept {
+  PointLanes<S, 2 * lane_count> both;
+  const auto join = [](const std::array<S, lane_count>& first, const std::array<S, lane_count>& second,
+                       auto& to) {
+    std::memcpy(to.data(), first.data(), sizeof first);
+    std::memcpy(to.data() + lane_count, second.data(), sizeof second);
+  };
+  join(a.x, b.x, both.x), join(a.y, b.y, both.y), join(a.z, b.z, both.z);
+  return both;
+}
+template <Real S>
+[[nodiscard]] inline PenetrationLanes<S> part(const PenetrationLanes<S, 2 * lane_count>& both,
+                                              std::size_t k) noexcept {
+  PenetrationLanes<S> one;
+  const auto take = [k](const auto& from, std::array<S, lane_count>& to) {
+    std::memcpy(to.data(), from.data() + k * lane_count, sizeof to);
+  };
+  take(both.depth, one.depth);
+  take(both.gradient_x, one.gradient_x);
+  take(both.gradient_y, one.gradient_y);
+  take(both.gradient_z, one.gradient_z);
+  return one;
+}
+
+/// Calls visit(begin, x, in) for every leaf of the tool with a point inside the surface: `lane_count` points
+/// from `begin` on, depth <= 0 for those that do not touch. Leaves are measured at once where the surface
+/// can, two of them where it can that.
+template <ContactSurface Object, Real S, class Visit>
+inline void for_each_touching_leaf(const ToolPoints<S>& tool, const Pose<S>& X, const Object& object,
+                                   const Visit& visit) noexcept {
+  const auto offer = [&](std::uint32_t begin, std::uint32_t count, const PointLanes<S>& x,
+                         PenetrationLanes<S>& in) noexcept {
+    for (std::uint32_t i = count; i < x.x.size(); ++i)  // the last leaf is filled up with a point of its own
+      in.depth[i] = in.gradient_x[i] = in.gradient_y[i] = in.gradient_z[i] = S(0);
+    if (lane_array(in.depth).maxCoeff() > S(0)) visit(begin, x, in);
+  };
+  if constexpr (HasPenetrationLanes<Object, 2 * lane_count>) {
+    struct Leaf {
+      std::uint32_t begin, count;
+      PointLanes<S> x;
+    };
+    std::array<Leaf, 2> leaf;
+    std::size_t leaves = 0;
+    for_each_candidate_leaf(tool, X, object,
+                            [&](std::uint32_t begin, std::uint32_t count, const PointLanes<S>& x) noexcept {
+                              leaf[leaves] = {begin, count, x};
+                              if (++leaves < leaf.size()) return;
+                              leaves = 0;
+                              PenetrationLanes<S, 2 * lane_count> both;
+                              object.penetration(joined(leaf[0].x, leaf[1].x), both);
+                              for (std::size_t k = 0; k < leaf.size(); ++k) {
+                                PenetrationLanes<S> in = part(both, k);
+                                offer(leaf[k].begin, leaf[k].count, leaf[k].x, in);
+                              }
+                            });
+    if (leaves == 0) return;
+    PenetrationLanes<S> in;
+    object.penetration(leaf[0].x, in);
+    offer(leaf[0].begin, leaf[0].count, leaf[0].x, in);
+  } else {
+    for_each_candidate_leaf(tool, X, object,
+                            [&](std::uint32_t begin, std::uint32_t count, const PointLanes<S>& x) noexcept {
+                              PenetrationLanes<S> in;
+                              if constexpr (HasPenetrationLanes<Object>)
+                                object.penetration(x, in);
+                              else
+                                penetrate_one_by_one(object, x, count, in);
+                              offer(begin, count, x, in);
+                            });
+  }
+}
+
+template <Real S>
+[[nodiscard]] inline Vec3<S> mean(const PointLanes<S>& x) noexcept {
+  Vec3<S> sum = Vec3<S>::Zero();
+  for (std::size_t i = 0; i < x.x.size(); ++i) sum += Vec3<S>(x.x[i], x.y[i], x.z[i]);
+  return sum / static_cast<S>(x.x.size());
+}
+
+/// What a leaf's points weigh: m_i/m up to the sharing's norm [-], and 1/A_i [1/m^2].
+template <Real S>
+struct alignas(64) LeafShare {
+  std::array<S, lane_count> weight, per_area;
+};
+template <class Sharing, Real S>
+[[nodiscard]] std::vector<LeafShare<S>> leaf_shares(const ToolPoints<S>& tool) {
+  std::vector<LeafShare<S>> shares((tool.size() + lane_count - 1) / lane_count);
+  for (std::size_t i = 0; i < lane_count * shares.size(); ++i) {
+    const S area = tool.area((std::min)(i, tool.size() - 1));
+    shares[i / lane_count].weight[i % lane_count] = Sharing::weight(area, tool.contact_area());
+    shares[i / lane_count].per_area[i % lane_count] = S(1) / area;
+  }
+  return shares;
+}
+
+/// Adds to `sum` the points of a leaf, each with its share of the law's force. A map's law is that at the
+/// leaf's middle, a point of the tool.
+template <Real S, ForceModel Force>
+inline void add_leaf(const LeafShare<S>& share, const Force& force, const PointLanes<S>& x,
+                     const PenetrationLanes<S>& in, LaneSum<S>& sum) noexcept {
+  if constexpr (requires(const LaneArray<S>& depth) { force.forces(depth); }) {
+    const LaneArray<S> depth = lane_array(in.depth).max(S(0)).min(force.max_depth());
+    sum.add(x, in, lane_array(share.weight) * force.forces(depth), share.per_area);
+  } else if constexpr (ForceMap<Force>) {
+    const Vec3<S> middle = mean(x);
+    const auto law = force.at(middle);
+    LaneArray<S> f;
+    Vec3<S> configurational = Vec3<S>::Zero();
+    for (std::size_t i = 0; i < share.weight.size(); ++i) {
+      f[static_cast<int>(i)] = share.weight[i] * law.force(in.depth[i]);
+      configurational += share.weight[i] * law.configurational_force(in.depth[i]);
+    }
+    sum.add(middle, configurational);
+    sum.add(x, in, f, share.per_area);
+  } else {
+    LaneArray<S> f;
+    for (std::size_t i = 0; i < share.weight.size(); ++i)
+      f[static_cast<int>(i)] = in.depth[i] > S(0) ? share.weight[i] * force.force(in.depth[i]) : S(0);
+    sum.add(x, in, f, share.per_area);
+  }
+}
+}  // namespace detail
+
+template <class Contacts, Real S>
+class Collector;
+
+template <Real S>
+class Collector<SinglePoint, S> {
+ public:
+  Collector(const SinglePoint&, const PointTool<S>&) noexcept {}
+
+  /// A map adds a force of its own, whose direction is another.
+  template <ForceModel Force>
+  using Sum = std::conditional_t<ForceMap<Force>, RegionSum<S>, PointForce<S>>;
+
+  template <ContactSurface Object, ForceModel Force>
+  Status collect(const Object& object, const PointTool<S>& tool, const Force& force, const Pose<S>& X,
+                 std::array<Sum<Force>, 1>& sums) noexcept {
+    const Vec3<S> x = X * tool.tip;
+    const Penetration<S> in = object.penetration(x);
+    const bool touching = in.depth > S(0);
+    slot_.update(touching);
+    if (!touching) return Status::ok;
+    const auto& law = detail::law_at(force, x);
+    const Vec3<S> arm = X.rotation * (tool.tip - tool.centre_of_mass);
+    sums[0].add(x, arm, in.gradient, in.depth, law.force(in.depth), S(0));
+    if constexpr (ForceMap<Force>) sums[0].add(arm, law.configurational_force(in.depth));
+    return Status::contact | detail::depth_status(object, force, in.depth);
+  }
+  [[nodiscard]] const RegionSlot& slot(std::size_t) const noexcept { return slot_.slot(); }
+  [[nodiscard]] static constexpr bool changed() noexcept { return false; }
+  void reset() noexcept { slot_.reset(); }
+
+ private:
+  SingleSlot slot_;
+};
+
+template <MassSharing Sharing, Real S>
+class Collector<SingleRegion<Sharing>, S> {
+ public:
+  template <ForceModel>
+  using Sum = RegionSum<S>;
+
+  Collector(const SingleRegion<Sharing>&, const ToolPoints<S>& tool)
+      : share_(detail::leaf_shares<Sharing>(tool)) {}
+
+  template <ContactSurface Object, ForceModel Force>
+  Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
+                 std::array<RegionSum<S>, 1>& sums) noexcept {
+    LaneSum<S> lanes(X * tool.centre_of_mass());
+    bool touching = false;
+    detail::for_each_touching_leaf(
+        tool, X, object,
+        [&](std::uint32_t begin, const PointLanes<S>& x, const PenetrationLanes<S>& in) noexcept {
+          detail::add_leaf(share_[begin / lane_count], force, x, in, lanes);
+          touching = true;
+        });
+    slot_.update(touching);
+    if (!touching) return Status::ok;
+    RegionSum<S>& sum = sums[0];
+    sum = lanes.total();
+    sum.scale(Sharing::norm(static_cast<S>(sum.points)));
+    return Status::contact | detail::depth_status(object, force, sum.deepest);
+  }
+  [[nodiscard]] const RegionSlot& slot(std::size_t) const noexcept { return slot_.slot(); }
+  [[nodiscard]] static constexpr bool changed() noexcept { return false; }
+  void reset() noexcept { slot_.reset(); }
+
+ private:
+  SingleSlot slot_;
+  std::vector<detail::LeafShare<S>> share_;
+};
+
+template <std::size_t N, MassSharing Sharing, Real S>
+class Collector<Regions<N, Sharing>, S> {
+ public:
+  template <ForceModel>
+  using Sum = RegionSum<S>;
+
+  Collector(const Regions<N, Sharing>& regions, const ToolPoints<S>& tool)
+      : tracker_(ProximityGraph<S>(tool, static_cast<S>(regions.distance)), tool.size()),
+        share_(detail::leaf_shares<Sharing>(tool)),
+        leaf_(share_.size()),
+        point_(tool.size() + 1) {}
+
+  template <ContactSurface Object, ForceModel Force>
+  Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
+                 std::array<RegionSum<S>, N>& sums) noexcept {
+    std::size_t leaves = 0, count = 0;
+    S deepest = S(0);
+    detail::for_each_touching_leaf(
+        tool, X, object,
+        [&](std::uint32_t begin, const PointLanes<S>&, const PenetrationLanes<S>& in) noexcept {
+          Leaf& leaf = leaf_[leaves];
+          leaf.begin = begin;
+          leaf.in = in;
+          ++leaves;
+          for (std::uint32_t i = 0; i < lanes; ++i) {
+            point_[count] = begin + i;  // without a branch: overwritten by the next one unless it touches
+            count += in.depth[i] > S(0) ? 1u : 0u;
+          }
+          deepest = (std::max)(deepest, detail::lane_array(in.depth).maxCoeff());
+        });
+    Status status =
+        tracker_.update({point_.data(), count}, [&](std::size_t i) { return X * tool.point(point_[i]); });
+    if (count == 0) return Status::ok;
+    if (tracker_.changed()) find_slots(leaves, count);
+    const Vec3<S> centre_of_mass = X * tool.centre_of_mass();
+    for (std::size_t slot = 0; slot < N; ++slot) {
+      const std::uint64_t bit = std::uint64_t(1) << slot;
+      if ((met_ & bit) == 0) continue;
+      LaneSum<S> sum(centre_of_mass);
+      for (std::size_t k = 0; k < leaves; ++k) {
+        const Leaf& leaf = leaf_[k];
+        if ((leaf.slots & bit) == 0) continue;
+        // Placed anew: less work than to keep them, once other programs' data have taken the caches.
+        const PointLanes<S> x = detail::place(X, tool.lanes(leaf.begin));
+        if (leaf.slots == bit) {
+          detail::add_leaf(share_[leaf.begin / lanes], force, x, leaf.in, sum);
+          continue;
+        }
+        PenetrationLanes<S> own = leaf.in;
+        for (std::uint32_t i = 0; i < lanes; ++i) own.depth[i] = leaf.slot[i] == slot ? own.depth[i] : S(0);
+        detail::add_leaf(share_[leaf.begin / lanes], force, x, own, sum);
+      }
+      sums[slot] = sum.total();
+      sums[slot].scale(Sharing::norm(static_cast<S>(sums[slot].points)));
+    }
+    return status | Status::contact | detail::depth_status(object, force, deepest);
+  }
+  [[nodiscard]] const RegionSlot& slot(std::size_t k) const noexcept { return tracker_.slots()[k]; }
+  [[nodiscard]] bool changed() const noexcept { return tracker_.changed(); }
+  void reset() noexcept { tracker_.reset(); }
+
+ private:
+  // The slots of each leaf's touching points; they stay while those points stay.
+  void find_slots(std::size_t leaves, std::size_t count) noexcept {
+    std::size_t next = 0;
+    met_ = 0;
+    for (std::size_t k = 0; k < leaves; ++k) {
+      Leaf& leaf = leaf_[k];
+      leaf.slots = 0;
+      for (; next < count && point_[next] < leaf.begin + lanes; ++next) {
+        const std::uint8_t slot = tracker_.slot_of()[next];
+        leaf.slots |= std::uint64_t(1) << slot;
+        leaf.slot[point_[next] - leaf.begin] = slot;
+      }
+      met_ |= leaf.slots;
+    }
+  }
+
+  static constexpr std::uint32_t lanes = static_cast<std::uint32_t>(lane_count);
+  struct Leaf {
+    std::uint32_t begin;
+    std::uint64_t slots;                          // of its touching points, as bits
+    std::array<std::uint8_t, lane_count> slot{};  // of each of them
+    PenetrationLanes<S> in;
+  };
+
+  RegionTracker<S, N> tracker_;
+  std::vector<detail::LeafShare<S>> share_;
+  std::vector<Leaf> leaf_;            // of this tick, those with touching points
+  std::vector<std::uint32_t> point_;  // touching tool points of this tick, in order
+  std::uint64_t met_ = 0;             // slots that have points, as bits
+};
+
+}  // namespace palpate

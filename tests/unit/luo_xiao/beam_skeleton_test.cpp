@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+#include "support/check.hpp"
+#include "support/no_heap.hpp"
+
+#include <palpate/luo_xiao/beam_skeleton.hpp>
+#include <palpate/luo_xiao/interpolation/linear.hpp>
+#include <palpate/luo_xiao/interpolation/phong.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace palpate;
+
+namespace {
+
+const Ellipsoid<double> body({.axes = {0.03, 0.02, 0.02}});
+const Vec3<double> bottom(0, -0.02, 0);
+
+template <template <class> class I, class D>
+struct Scene {
+  using Beams = Skeleton<double>;
+  using Model = BeamSkeletonDeformation<RegionSkeletons<Beams>, I<D>>;
+  static_assert(DeformationModel<Model>);
+
+  MeshData<D> mesh;
+  Model model;
+
+  explicit Scene(std::size_t vertices)
+      : mesh(display().mesh(vertices)),
+        model(RegionSkeletons<Beams>(
+                  Beams(places(), EulerBernoulli<double>(IsotropicElasticity<double>({.E = 1e5, .nu = 0.5})),
+                        VolumePreserving<double>({.volume = body.volume()}))),
+              I<D>(make_partition(display(), mesh)), AreaNeighbourhood<D>({}), mesh, {.fixed = bottom}) {}
+
+  static Ellipsoid<D> display() { return Ellipsoid<D>({.axes = {D(0.03), D(0.02), D(0.02)}}); }
+  static std::vector<Vec3<double>> places() {
+    std::vector<Vec3<double>> result;
+    for (const auto& point : extremal_points(display()))
+      result.push_back(point.position.template cast<double>());
+    return result;
+  }
+};
+
+ContactState<double> pressed(const Vec3<double>& place, double depth, double force) {
+  const Vec3<double> n = body.closest(place).normal;
+  ContactState<double> c{};
+  c.points = 1;
+  c.normal = n;
+  c.displacement = -depth * n;
+  c.centre = place + c.displacement;
+  c.force = force * n;
+  c.normal_force = force;
+  return c;
+}
+
+}  // namespace
+
+TEST_CASE("pressed body: the contact vertex moves by D, the bottom centre stays, zero force moves nothing") {
+  Scene<PhongInterpolation, double> scene(400);
+  auto& mesh = scene.mesh;
+  std::size_t top = 0, low = 0;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    if (mesh.vertices[i].y() > mesh.vertices[top].y()) top = i;
+    if (mesh.vertices[i].y() < mesh.vertices[low].y()) low = i;
+  }
+  std::vector<double> positions(3 * mesh.vertices.size());
+  const VertexBuffer<double> out{.positions = positions.data()};
+  scene.model.write_rest(out);
+  const auto at = [&](std::size_t i) {
+    return Vec3<double>(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
+  };
+  const std::vector<ContactState<double>> idle{pressed({0, 0.02, 0}, 0, 0)};
+  CHECK(scene.model.write(idle, out).vertices == 0);
+  const std::vector<ContactState<double>> contacts{pressed({0, 0.02, 0}, 2e-3, 0.5)};
+  const auto moved = scene.model.write(contacts, out);
+  CHECK(moved.vertices > mesh.vertices.size() / 2);
+  // Mesh vertices lie on the axis ends to 1e-9 m.
+  CHECK((at(top) - mesh.vertices[top] - Vec3<double>(0, -2e-3, 0)).norm() <= 1e-8);
+  CHECK((at(low) - mesh.vertices[low]).norm() <= 1e-9);
+  CHECK(scene.model.write(contacts, out).vertices == 0);
+  const std::vector<double> drawn = positions;
+  scene.model.write_rest(out);
+  CHECK(scene.model.write(std::vector<ContactState<double>>{}, out).vertices == 0);
+  CHECK(scene.model.write(contacts, VertexBuffer<double>{}).vertices == 0);  // no buffer: not taken as drawn
+  CHECK(scene.model.write(contacts, out).vertices == moved.vertices);
+  CHECK(positions == drawn);
+}
+
+TEST_CASE("a second contact that appears with no force changes nothing") {
+  Scene<LinearInterpolation, double> one(300), two(300);
+  std::vector<double> a(3 * one.mesh.vertices.size()), b(a.size());
+  one.model.write_rest(VertexBuffer<double>{.positions = a.data()});
+  two.model.write_rest(VertexBuffer<double>{.positions = b.data()});
+  const auto first = pressed(body.closest({0.015, 0.02, 0.003}).position, 2e-3, 0.5);
+  const auto second = pressed(body.closest({-0.015, 0.02, 0.003}).position, 0, 0);
+  one.model.write(std::vector{first}, VertexBuffer<double>{.positions = a.data()});
+  two.model.write(std::vector{first, second}, VertexBuffer<double>{.positions = b.data()});
+  for (std::size_t i = 0; i < a.size(); ++i)
+    CHECK_ABSOLUTE(a[i], b[i], 1e-15);  // another solve, 50 ulp of 0.03
+}
+
+TEST_CASE("display in float beside a scene in double; more contacts than the skeleton takes; no heap") {
+  Scene<PhongInterpolation, float> scene(300);
+  Scene<PhongInterpolation, double> exact(300);
+  std::vector<float> positions(3 * scene.mesh.vertices.size());
+  std::vector<double> reference(positions.size());
+  const VertexBuffer<float> out{.positions = positions.data()};
+  scene.model.write_rest(out);
+  exact.model.write_rest(VertexBuffer<double>{.positions = reference.data()});
+  std::vector<ContactState<double>> contacts(9,
+                                             pressed(body.closest({0.01, 0.02, 0.006}).position, 1e-3, 0.5));
+  contacts.resize(9);
+  CHECK(has(scene.model.write(contacts, out).status, Status::region_overflow));
+  contacts.resize(1);
+  const test::HeapCount heap;
+  scene.model.write(contacts, out);
+  CHECK(heap.allocations() == 0);
+  exact.model.write(contacts, VertexBuffer<double>{.positions = reference.data()});
+  for (std::size_t i = 0; i < positions.size(); ++i)
+    CHECK_ABSOLUTE(positions[i], reference[i], 1e-7);  // 30 ulp of 0.03
+}
+
+TEST_CASE("set-up refuses a skeleton over other points") {
+  using S = Scene<LinearInterpolation, double>;
+  auto places = S::places();
+  std::swap(places[0], places[1]);
+  const auto mesh = body.mesh(100);
+  const auto make = [&] {
+    return S::Model(RegionSkeletons<S::Beams>(S::Beams(
+                        places, EulerBernoulli<double>(IsotropicElasticity<double>({.E = 1e5, .nu = 0.5})),
+                        VolumePreserving<double>({.volume = body.volume()}))),
+                    LinearInterpolation<double>(make_partition(body, mesh)), AreaNeighbourhood<double>({}),
+                    mesh, {.fixed = bottom});
+  };
+  CHECK_THROWS_WITH(
+      make(),
+      "BeamSkeletonDeformation: skeleton and partition must have the same place, at extremal point 0");
+  places.pop_back();
+  CHECK_THROWS_AS(make(), SetupError);
+}

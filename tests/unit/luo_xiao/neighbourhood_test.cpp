@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include "support/check.hpp"
+
+#include <palpate/luo_xiao/neighbourhood.hpp>
+
+#include <doctest/doctest.h>
+
+using namespace palpate;
+using palpate::test::ulps;
+
+TEST_CASE_TEMPLATE("factor by area: 1 up to the reference, then 1/(1 + ln(A/A_ref))", S, float, double) {
+  const AreaNeighbourhood<S> n({.reference_area = S(2e-6)});
+  ContactDisplacement<S> c;
+  for (const double ratio : {0.0, 1e-9, 0.5, 1.0}) {
+    c.area = S(2e-6 * ratio);
+    CHECK(n.factor(c) == S(1));
+  }
+  for (const double ratio : {1.0000001, 2.0, 2.718281828459045, 10.0, 1e6}) {
+    c.area = S(2e-6) * S(ratio);
+    const long double exact =
+        1.0L / (1 + std::log(static_cast<long double>(c.area) / static_cast<long double>(S(2e-6))));
+    CHECK_RELATIVE(n.factor(c), exact, ulps<S>(4));  // one division, one logarithm, one more division
+  }
+  CHECK_RELATIVE(n.factor([&] {
+    c.area = S(2e-6) * S(2.718281828459045);
+    return c;
+  }()),
+                 0.5, ulps<S>(4));
+}
+
+TEST_CASE("factor by count: the paper's w = 1/(1 + ln n)") {
+  const CountNeighbourhood<double> n({.radius = 0.01});
+  ContactDisplacement<double> c;
+  for (const double points : {1.0, 2.0, 10.0, 1000.0}) {
+    c.points = points;
+    CHECK_RELATIVE(n.factor(c), 1.0L / (1 + std::log(static_cast<long double>(points))), ulps<double>(4));
+  }
+  c.points = 0;
+  CHECK(n.factor(c) == 1.0);
+  CHECK(n.radius(c) == 0.01);
+}
+
+TEST_CASE("radius: as given, else twice the region's") {
+  ContactDisplacement<double> c;
+  c.area = 3.14159265358979323846e-6;
+  CHECK_RELATIVE(AreaNeighbourhood<double>({}).radius(c), 2e-3, ulps<double>(4));
+  CHECK(AreaNeighbourhood<double>({.radius = 0.004}).radius(c) == 0.004);
+  c.area = 0;
+  CHECK(AreaNeighbourhood<double>({}).radius(c) == 0.0);
+}
+
+TEST_CASE("areas that make no sense: no reduction") {
+  const AreaNeighbourhood<double> n({});
+  ContactDisplacement<double> c;
+  for (const double area :
+       {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    c.area = area;
+    CHECK(n.factor(c) == 1.0);
+    CHECK(n.radius(c) == 0.0);
+  }
+}
+
+TEST_CASE("set-up refuses what cannot be") {
+  CHECK_THROWS_WITH(AreaNeighbourhood<double>({.reference_area = 0}),
+                    "AreaNeighbourhood: reference_area [m^2] must be > 0, got 0");
+  CHECK_THROWS_WITH(AreaNeighbourhood<double>({.radius = -1}),
+                    "AreaNeighbourhood: radius [m] must be >= 0, got -1");
+  CHECK_THROWS_WITH(CountNeighbourhood<double>({.radius = -2}),
+                    "CountNeighbourhood: radius [m] must be >= 0, got -2");
+}
