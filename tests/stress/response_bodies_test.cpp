@@ -86,7 +86,7 @@ void try_body(const test::ResponseBody& body, double convergence) {
       const std::size_t count = path % 2 == 0 ? 1 : 2;
       tick.solve(both.data(), count, F, T);
       const double way = way_of(both[0]),
-                   stiff = mu * way / disc_compliance(a, body.nu).normal;  // half-space, at most
+                   stiff = mu * way / flat_punch_compliance(a, body.nu).normal;  // half-space, at most
       const double moved = ((one.place - from[0]).norm() + (two.place - from[1]).norm()) / (std::min)(h, a) +
                            (one.normal - turned[0]).norm() + (two.normal - turned[1]).norm();
       double steep = 0;

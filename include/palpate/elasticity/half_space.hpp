@@ -22,7 +22,7 @@ namespace palpate {
 ///     u(x) = sum_c K_c(x) P_c + B(x) Q + U + theta x (x - o),   Q = -sum_c (P_c, (x_c - o) x P_c)
 ///
 /// K_c is the field of a force on a stuck flat disc of the contact's radius, B that of force and moment on a
-/// disc in the place of the fixed region, both closed forms of the half-space (elasticity/near_field.hpp); U
+/// disc in the place of the fixed region, both closed forms of the half-space (elasticity/disc.hpp); U
 /// and theta make u zero over the fixed region in the least squares' sense, and the forces P_c give each
 /// contact its displacement D_c, or are 0 where that would take a pull. Own derivation: what a body feels of
 /// a small contact, and of a small support, is the half-space's field; the far one sees force and moment only
@@ -99,7 +99,7 @@ class HalfSpaceDeformation {
 
  private:
   static constexpr const char* name = "HalfSpaceDeformation";
-  static constexpr double scale = 1 / (4 * std::numbers::pi);  // of near_field.hpp
+  static constexpr double scale = 1 / (4 * std::numbers::pi);  // of disc.hpp
   using V = Vec3<double>;
   using Screw = detail::Screw;
   using Lane = detail::FloatRegister;
@@ -143,7 +143,8 @@ class HalfSpaceDeformation {
       const auto put = [&](std::vector<float>& list, double value) {
         list[v] = static_cast<float>(value * scale);
       };
-      const auto force = disc.flat(1, 0, nu), shear = disc.flat(0, 1, nu), tilt = disc.tilt(1, nu);
+      const auto force = disc.flat_punch(1, 0, nu), shear = disc.flat_punch(0, 1, nu),
+                 tilt = disc.bending_couple(1, nu);
       put(profile_.force_in, force.in_plane);
       put(profile_.force_down, force.normal);
       put(profile_.shear_in, shear.in_plane);
@@ -152,13 +153,13 @@ class HalfSpaceDeformation {
       put(profile_.tilt_in, tilt.in_plane);
       put(profile_.tilt_down, tilt.normal);
       put(profile_.tilt_along, tilt.along);
-      put(profile_.twist, disc.twist());
+      put(profile_.twist, disc.torsional_couple());
     }
   }
 
   [[nodiscard]] V contact_field(const Contact& c, const V& x, const V& f) const noexcept {
     const V r = x - c.x;
-    return scale * disc_load(r, c.m, edge_depth(r, c.m, c.a), c.a, f, static_cast<double>(p_.nu));
+    return scale * flat_punch_load(r, c.m, edge_depth(r, c.m, c.a), c.a, f, static_cast<double>(p_.nu));
   }
 
   // Keeps the contacts; false when they are those of the last tick.
@@ -194,7 +195,7 @@ class HalfSpaceDeformation {
     for (std::size_t j = 0; j < count_; ++j) {
       const Contact& cj = contact_[j];
       d.template segment<3>(static_cast<Eigen::Index>(3 * j)) = cj.d;
-      const DiscCompliance own = disc_compliance(cj.a, static_cast<double>(p_.nu));
+      const FlatPunchCompliance own = flat_punch_compliance(cj.a, static_cast<double>(p_.nu));
       for (int k = 0; k < 3; ++k) {
         const V f = V::Unit(k);
         const Screw q = base_.reaction(cj.x, f);
@@ -205,8 +206,8 @@ class HalfSpaceDeformation {
           const Contact& ci = contact_[i];
           const V y = ci.x - base_.middle();
           const double fn = f.dot(cj.m);
-          const V direct =
-              i == j ? V(own.normal * fn * cj.m + own.along * (f - fn * cj.m)) : contact_field(cj, ci.x, f);
+          const V direct = i == j ? V(own.normal * fn * cj.m + own.tangential * (f - fn * cj.m))
+                                  : contact_field(cj, ci.x, f);
           C.template block<3, 1>(static_cast<Eigen::Index>(3 * i), static_cast<Eigen::Index>(3 * j) + k) =
               direct + base_.field(y, q) + detail::rigid_motion(w, y);
         }
@@ -349,7 +350,7 @@ class HalfSpaceDeformation {
       Lanes p = r;
       p.add(-z, m);
       const Lane depth = larger(z * (1.f - smaller(a * a / square, all_of<Lane>(1.f))), Lane{});
-      const auto w = Disc<Lane, float>(p.dot(p), depth, a).flat(fn, p.dot(t), nu);
+      const auto w = Disc<Lane, float>(p.dot(p), depth, a).flat_punch(fn, p.dot(t), nu);
       Lanes u{lane_at(&ux_[v]), lane_at(&uy_[v]), lane_at(&uz_[v])};
       u.add(w.in_plane, p);
       u.add(w.normal, m);

@@ -173,7 +173,7 @@ class ResponseTick {
     if (count_ == 0 || kept == 0) return;
     const float most =
         turned_.find(total_.data(), near_.data(), contact_, count_, contact_.constants(), second_.data());
-    kept *= detail::fading(double(most), 4 * contact_.deepest2(count_));
+    kept *= detail::smooth_limit(double(most), 4 * contact_.deepest2(count_));
     const auto size = static_cast<Eigen::Index>(total_.size());
     Eigen::Map<Eigen::ArrayXf>(total_.data(), size) +=
         static_cast<float>(kept) * Eigen::Map<const Eigen::ArrayXf>(second_.data(), size);
@@ -182,7 +182,7 @@ class ResponseTick {
   // A body may move farther than the tool by its levers; a field beyond 4 d is one that the mesh does not
   // resolve. It is drawn smaller: never a spike.
   void hold_back() noexcept {
-    const auto share = static_cast<float>(detail::fading(largest(total_), 16 * contact_.deepest2(count_)));
+    const auto share = static_cast<float>(detail::smooth_limit(largest(total_), 16 * contact_.deepest2(count_)));
     if (!(share < 1)) return;
     const std::size_t n = field_->stride();
     Eigen::Map<Eigen::ArrayXf>(total_.data(), static_cast<Eigen::Index>(total_.size())) *= share;
@@ -213,7 +213,7 @@ class ResponseTick {
         second += g[0] * column(3);
       if (c.twist != 0) second += static_cast<float>(c.share * at.weight * c.twist) * column(6);
     }
-    const double share = detail::fading(largest(second_), 4 * c.way2());
+    const double share = detail::smooth_limit(largest(second_), 4 * c.way2());
     Eigen::Map<Eigen::ArrayXf>(total_.data(), size) += static_cast<float>(share) * second;
   }
 

@@ -5,7 +5,7 @@
 /// motion that keeps it at rest. Set-up, and a few places per tick.
 
 #include <palpate/core/error.hpp>
-#include <palpate/elasticity/near_field.hpp>
+#include <palpate/elasticity/flat_punch.hpp>
 #include <palpate/geometry/concept.hpp>
 
 #include <Eigen/Cholesky>
@@ -90,9 +90,9 @@ class FixedBase {
     const double fn = f.dot(inward_);
     const V along = f - fn * inward_, tilt = inward_.cross(moment);
     const Disc<double> from = disc(y);
-    const auto u = from.flat(fn, along.dot(p), nu_), w = from.tilt(tilt.dot(p), nu_);
+    const auto u = from.flat_punch(fn, along.dot(p), nu_), w = from.bending_couple(tilt.dot(p), nu_);
     return ((u.in_plane + w.in_plane) * p + (u.normal + w.normal) * inward_ + u.along * along +
-            w.along * tilt + from.twist() * moment.dot(inward_) * inward_.cross(p)) /
+            w.along * tilt + from.torsional_couple() * moment.dot(inward_) * inward_.cross(p)) /
            (4 * std::numbers::pi);
   }
   /// The rigid motion nearest to a field over the region; `at(y)` with y from the middle.

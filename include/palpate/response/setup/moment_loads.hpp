@@ -12,7 +12,7 @@
 /// t1 = perpendicular(normal), t2 = normal x t1. A node of weight g at p has the force A q, q = g p / sum g
 /// p^2, less where part of the patch is held: none from half on.
 
-#include <palpate/elasticity/near_field.hpp>
+#include <palpate/elasticity/flat_punch.hpp>
 #include <palpate/response/tick/load_mesh.hpp>
 
 namespace palpate {

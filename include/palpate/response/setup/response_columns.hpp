@@ -11,7 +11,8 @@
 /// map; the rest is G times nodal values, which are not t_near's: those whose interpolant has the same
 /// integrals. (Its own are beyond it where it bends, by 10 % at two edges from the node.)
 
-#include <palpate/elasticity/near_field.hpp>
+#include <palpate/elasticity/flat_punch.hpp>
+#include <palpate/elasticity/point_load.hpp>
 #include <palpate/response/setup/boundary_element.hpp>
 #include <palpate/response/setup/load_places.hpp>
 
@@ -164,7 +165,7 @@ namespace detail {
                                           double nu) {
   const Vec3d r = m.vertices[v] - node.source, e = Vec3d::Unit(l);
   const bool own = r.norm() < 0.3 * node.size;
-  const Vec3d u = own ? disc_load(r, -node.normal, 0, 0.5 * node.size, e, nu)
+  const Vec3d u = own ? flat_punch_load(r, -node.normal, 0, 0.5 * node.size, e, nu)
                       : point_load<double>(r, -node.normal, e, nu);
   return u / (4 * std::numbers::pi);
 }

@@ -137,7 +137,7 @@ void each_moment(const ResponseField& field, const PlacedContact& c, const Each&
   for (int l = 0; l < 3; ++l) {
     const double fn = cj.m[l];
     const Vec3<double> t = Vec3<double>::Unit(l) - fn * cj.m;
-    const auto u = disc.flat(fn, t.dot(p), nu);
+    const auto u = disc.flat_punch(fn, t.dot(p), nu);
     out.col(l) = scale * (u.in_plane * p + u.normal * cj.m + u.along * t);
   }
   return out;
@@ -164,12 +164,12 @@ void each_moment(const ResponseField& field, const PlacedContact& c, const Each&
                near = ci.carried * cj.carried / (4 * std::numbers::pi);
   const Vec3<double> r = ci.x - cj.x, p = tangential(r, cj.m);
   const Disc<double> disc = mean_disc(cj, r, p, a);
-  const auto d = disc.double_force(nu);
+  const auto d = disc.force_dipole(nu);
   const std::array<Vec3<double>, 3> tilt{Vec3<double>::Zero(), cj.t1(), cj.t2()};
   Mat3<double> out;
   out.col(0) = near * (d.in_plane * p + d.normal * cj.m);
   for (std::size_t l = 1; l < 3; ++l) {
-    const auto t = disc.tilt(tilt[l].dot(p), nu);
+    const auto t = disc.bending_couple(tilt[l].dot(p), nu);
     out.col(Eigen::Index(l)) = near * (t.in_plane * p + t.normal * cj.m + t.along * tilt[l]);
   }
   for (const PatchWeight& j : cj.nodes) {
@@ -188,7 +188,7 @@ void each_moment(const ResponseField& field, const PlacedContact& c, const Each&
                                                     const PlacedContact& cj) noexcept {
   const double near = ci.carried * cj.carried / (4 * std::numbers::pi);
   const Vec3<double> r = ci.x - cj.x, p = tangential(r, cj.m);
-  Vec3<double> out = near * mean_disc(cj, r, p, std::hypot(ci.a, cj.a)).twist() * cj.m.cross(p);
+  Vec3<double> out = near * mean_disc(cj, r, p, std::hypot(ci.a, cj.a)).torsional_couple() * cj.m.cross(p);
   for (const PatchWeight& i : ci.nodes)
     for (const PatchWeight& j : cj.nodes)
       out += ci.share * cj.share * i.weight * j.weight * field.at(i.node, j.node, 6);

@@ -14,8 +14,8 @@
 /// delta_n = C_near P. docs/response_field.md.
 
 #include <palpate/response/contact_types.hpp>
+#include <palpate/response/tick/bounded_compliance.hpp>
 #include <palpate/response/tick/contact_coupling.hpp>
-#include <palpate/response/tick/held_compliance.hpp>
 
 namespace palpate::detail {
 
@@ -30,10 +30,10 @@ namespace palpate::detail {
 /// Share of a displacement that is kept: one of more than half of d, or whose force is more than half of the
 /// contact's, means that the series in depth has ended.
 [[nodiscard]] inline double kept(double size, const PlacedContact& c) noexcept {
-  return fading(size * size, 0.25 * c.way2());
+  return smooth_limit(size * size, 0.25 * c.way2());
 }
 [[nodiscard]] inline double kept_of_force(const Vec3<double>& u, const PlacedContact& c) noexcept {
-  return fading((c.S * u).squaredNorm(), 0.25 * c.P.squaredNorm());
+  return smooth_limit((c.S * u).squaredNorm(), 0.25 * c.P.squaredNorm());
 }
 /// The largest displacement by a double force and a tilt, given those by units. Not their sum's: where large
 /// ones cancel each other, what is left is noise.
@@ -114,12 +114,12 @@ inline void turn_patch(const ResponseField& field, PlacedContact& c) noexcept {
 /// without.
 inline void press(const ResponseField& field, const SecondOrder* second_order, PlacedContact& c) noexcept {
   const double nu = field.nu(), stuck = stuck_load(c.a, nu);
-  const DiscCompliance near = disc_compliance(c.a, nu);
+  const FlatPunchCompliance near = flat_punch_compliance(c.a, nu);
   const Vec3<double> t1 = c.t1(), t2 = c.t2();
   // The universal forces take no force above the half-space's for d: where the body is far stiffer, they have
   // nothing to say. The double force and what is drawn near the patch take twice as much.
   const double normal = c.P.dot(c.m);
-  const Vec3<double> indentation = near.along * c.P + (near.normal - near.along) * normal * c.m;
+  const Vec3<double> indentation = near.tangential * c.P + (near.normal - near.tangential) * normal * c.m;
   const double most = std::sqrt(c.way2()), length = indentation.norm();
   const double local = length > most ? most / length : 1, twice = (std::min)(2 * local, 1.0);
   const Vec3<double> P = local * c.P;
@@ -132,7 +132,7 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
   double stiff = (1 - c.moments.share) * tilt_stiff;
   const double taken = stiff * (2 * moved.radial.squaredNorm() + moved.tilting.squaredNorm()),
                whole = c.C.trace();
-  stiff *= fading(taken * taken, 0.25 * whole * whole);
+  stiff *= smooth_limit(taken * taken, 0.25 * whole * whole);
   const Vec3<double> slope = moved.tilting * P,
                      leaning = (slope.dot(t1) + c.bent[1]) * t1 + (slope.dot(t2) + c.bent[2]) * t2;
   c.dipole = stuck * pushed - 2 * stiff * (moved.radial.dot(P) + c.bent[0]);
@@ -155,17 +155,17 @@ inline void press(const ResponseField& field, const SecondOrder* second_order, P
       -outward(nu) * twice * normal * depth - k.foreshortened * tilt_stiff * lean.squaredNorm();
   c.dn2 = delta * depth;
   c.beta = std::clamp(delta / c.a, 0.0, 2.0);
-  c.delta_t = near.along * twice * tangential(c.P, c.m);
+  c.delta_t = near.tangential * twice * tangential(c.P, c.m);
   // By how much the body as a whole gives way, along the normal and the surface.
-  const Vec3<double> gone = c.d - near.along * P - (near.normal - near.along) * pushed * c.m,
+  const Vec3<double> gone = c.d - near.tangential * P - (near.normal - near.tangential) * pushed * c.m,
                      slid = tangential(gone, c.m);
   const double sunk = gone.dot(c.m);
   c.turn = k.turn_slid * pushed * slid - k.turn_sunk * sunk * dragged;
   const double steep = indented / c.a;
-  c.push = near.along * near.along * k.drag / (1 + steep * steep) * indented * dragged -
+  c.push = near.tangential * near.tangential * k.drag / (1 + steep * steep) * indented * dragged -
            near.normal * k.softening * indented * depth * c.m;
-  const Vec3<double> slipped = near.along * dragged;
-  c.push -= k.tip * c.a * (near.along * indented * lean + near.normal * slipped.dot(lean) * c.m);
+  const Vec3<double> slipped = near.tangential * dragged;
+  c.push -= k.tip * c.a * (near.tangential * indented * lean + near.normal * slipped.dot(lean) * c.m);
   // The patch, too, would turn with the body (turned_field.hpp); it is held where it is. The tool feels that
   // as `lever`. At most a quarter of d, and of the force.
   const Vec3<double> going = 0.5 * (k.turned * gone + k.crossed * (c.d - gone)),

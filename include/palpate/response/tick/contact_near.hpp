@@ -18,7 +18,7 @@
 /// over what Hertz's weight makes of it on the surface, about 1 + 0.9 s^-2 + 0.7 s^-4; within, (1 - (r/a)^2)
 /// r `radial` along the surface instead.
 
-#include <palpate/elasticity/near_field.hpp>
+#include <palpate/elasticity/flat_punch.hpp>
 
 namespace palpate::detail {
 
@@ -100,8 +100,8 @@ struct ContactNear {
     if (ball) {
       auto u = disc.hertz(normal, nu);
       if (second) {
-        const auto d = disc.double_force(nu),
-                   t = disc.flat(0, px * along.x() + py * along.y() + pz * along.z(), nu);
+        const auto d = disc.force_dipole(nu),
+                   t = disc.flat_punch(0, px * along.x() + py * along.y() + pz * along.z(), nu);
         const V near4 = near2 * near2, share = (1.f - near4 * near2) / (1.f + 0.9f * near2 + 0.7f * near4);
         u.in_plane += t.in_plane + dipole * share * d.in_plane + radial * larger(1.f - r2 / (a * a), V{});
         u.normal += t.normal + dipole * share * d.normal;
@@ -111,11 +111,11 @@ struct ContactNear {
               u.in_plane * py + u.normal * m.y() + u.along * along.y(),
               u.in_plane * pz + u.normal * m.z() + u.along * along.z()};
     }
-    const auto u = disc.flat(normal, px * along.x() + py * along.y() + pz * along.z(), nu);
+    const auto u = disc.flat_punch(normal, px * along.x() + py * along.y() + pz * along.z(), nu);
     V in_plane = u.in_plane, down = u.normal, turned_back{};
     Axes<V> out{u.along * along.x(), u.along * along.y(), u.along * along.z()};
     if (second) {
-      const auto d = disc.double_force(nu);
+      const auto d = disc.force_dipole(nu);
       const V inverse = root(near2), beyond = larger(1.f - near2, V{});  // 1 / s, at most 1; 1 - 1 / s^2
       // q_r / (a s): asin(1/s) / (s sqrt(s^2 - 1 + e^2)), with the roots of 1/s^2 instead.
       const V q_r = (radial / a) * arc_sine(inverse) * near2 * inverse /
@@ -132,7 +132,7 @@ struct ContactNear {
     }
     if (tilted) {
       const V tp = px * tilt.x() + py * tilt.y() + pz * tilt.z();
-      const auto t = disc.tilt(tp, nu);
+      const auto t = disc.bending_couple(tp, nu);
       in_plane += t.in_plane;
       // The patch itself does not turn: what second order does at its edge is taken back, as the push is.
       down += t.normal - turned_back * (px * turn.x() + py * turn.y() + pz * turn.z());
@@ -141,7 +141,7 @@ struct ContactNear {
       out.z += t.along * tilt.z();
     }
     if (twisted) {
-      const V around = twist * disc.twist();
+      const V around = twist * disc.torsional_couple();
       out.x += around * (m.y() * pz - m.z() * py);
       out.y += around * (m.z() * px - m.x() * pz);
       out.z += around * (m.x() * py - m.y() * px);
@@ -150,7 +150,7 @@ struct ContactNear {
       const V sx = shear(0, 0) * px + shear(0, 1) * py + shear(0, 2) * pz,
               sy = shear(1, 0) * px + shear(1, 1) * py + shear(1, 2) * pz,
               sz = shear(2, 0) * px + shear(2, 1) * py + shear(2, 2) * pz;
-      const auto s = disc.shear(px * sx + py * sy + pz * sz, nu);
+      const auto s = disc.shear_dipole(px * sx + py * sy + pz * sz, nu);
       in_plane += s.in_plane;
       down += s.normal;
       out.x += s.along * sx;

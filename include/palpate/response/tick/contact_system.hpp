@@ -16,14 +16,14 @@
 /// wide patch is held: patch_moments.hpp. Where the solve mesh does not resolve the body, a mode of the
 /// system may give way too little or even pull: it is held at a tenth of the half-space's smaller compliance
 /// (coupled contacts: a twentieth, and a 10,000th of all compliance, to which no mesh knows it: on a plate
-/// that bends easily two contacts would else throw each other out), continuously (held_compliance.hpp).
+/// that bends easily two contacts would else throw each other out), continuously (bounded_compliance.hpp).
 
 #include <palpate/core/cholesky.hpp>
 #include <palpate/response/contact_types.hpp>
+#include <palpate/response/tick/bounded_compliance.hpp>
 #include <palpate/response/tick/contact_coupling.hpp>
 #include <palpate/response/tick/contact_loads.hpp>
 #include <palpate/response/tick/contact_near.hpp>
-#include <palpate/response/tick/held_compliance.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -89,7 +89,7 @@ class ContactSystem {
     const double stiff = twist_stiffness(*field_, c);
     const auto twisted = [stiff](const Vec3<double>& by_force, const Contact& pushed) {
       const double taken = stiff * by_force.squaredNorm(), whole = pushed.C.trace();
-      return fading(taken * taken, 0.25 * whole * whole) * by_force.dot(pushed.P);
+      return smooth_limit(taken * taken, 0.25 * whole * whole) * by_force.dot(pushed.P);
     };
     double angle = twisted(moved_by_twist(*field_, c), c);
     for (std::size_t j = 0; j < count; ++j)
@@ -124,10 +124,10 @@ class ContactSystem {
     for (const PatchWeight& w : c.nodes) sum += w.weight;
     c.carried = 1 - c.share * (std::max)(1 - sum, 0.0);
     c.w = c.share * c.share * field_->table().own(c.place.triangle, c.place.weight, c.level);
-    const DiscCompliance near = disc_compliance(c.a, field_->nu());
-    c.C = c.w + (near.normal - near.along) * (c.m * c.m.transpose());
-    c.C.diagonal().array() += near.along;
-    c.least = (std::min)(near.normal, near.along);
+    const FlatPunchCompliance near = flat_punch_compliance(c.a, field_->nu());
+    c.C = c.w + (near.normal - near.tangential) * (c.m * c.m.transpose());
+    c.C.diagonal().array() += near.tangential;
+    c.least = (std::min)(near.normal, near.tangential);
     const Mat3<double> C = c.C;
     invert(c);
     c.w += c.C - C;
@@ -194,7 +194,7 @@ class ContactSystem {
     const SecondOrder& k = settings_.constants;
     // At the rim the double force's disc moves -dipole (2 - 2 nu) 3 / (32 a^2); the near term takes it back.
     // (At nu = 0 there is nothing to take back.)
-    const double per_depth = 1 / (c.a * disc_compliance(c.a, nu).normal);
+    const double per_depth = 1 / (c.a * flat_punch_compliance(c.a, nu).normal);
     const double moved = (std::max)(outward(nu), 0.01) * per_depth * (2 - 2 * nu);
     const double rim = k.radial * 16 / (3 * moved) * std::numbers::pi;
     ContactNear near;
@@ -249,7 +249,7 @@ class ContactSystem {
 
   // S, with C held.
   static void invert(Contact& c) noexcept {
-    if (!is_above(c.C, one_mode * c.least)) hold_above(c.C, one_mode * c.least);
+    if (!is_bounded_below(c.C, one_mode * c.least)) bound_below(c.C, one_mode * c.least);
     c.S = c.C.inverse();
   }
   // What contacts do to each other. It is at most what they give way: with K = L_i N L_j^T, C = L L^T, all
@@ -281,7 +281,7 @@ class ContactSystem {
         u +=
             smooth(std::sqrt(deeper / (d2 + tiny)) - 1) * (by(i, j).forces * (contact_[j].S * contact_[j].d));
       }
-      c.grip = smooth(4 * (1 - u.dot(c.d) / (d2 + tiny))) * fading(0.01 * u.squaredNorm(), d2);
+      c.grip = smooth(4 * (1 - u.dot(c.d) / (d2 + tiny))) * smooth_limit(0.01 * u.squaredNorm(), d2);
     }
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t j = 0; j < count; ++j)
@@ -359,7 +359,7 @@ class ContactSystem {
     for (std::size_t r = 0; r < n; ++r)
       for (std::size_t c = 0; c < n; ++c)
         C(Eigen::Index(r), Eigen::Index(c)) = system.at((std::max)(r, c), (std::min)(r, c)) / unit(r, c);
-    hold_above(C, 1);
+    bound_below(C, 1);
     for (std::size_t r = 0; r < n; ++r)
       for (std::size_t c = 0; c <= r; ++c) system.at(r, c) = C(Eigen::Index(r), Eigen::Index(c)) * unit(r, c);
   }

@@ -23,8 +23,8 @@
 
 #include <palpate/core/cholesky.hpp>
 #include <palpate/response/response_field.hpp>
+#include <palpate/response/tick/bounded_compliance.hpp>
 #include <palpate/response/tick/contact_near.hpp>
-#include <palpate/response/tick/held_compliance.hpp>
 
 namespace palpate::detail {
 
@@ -150,7 +150,7 @@ struct PatchMoments {
     SpdSystem<5> less = system;
     for (std::size_t r = 0; r < 5; ++r) less.at(r, r) -= 0.1;
     if (!less.factor(5)) {
-      hold_above(D, 0.1);
+      bound_below(D, 0.1);
       for (int r = 0; r < 5; ++r)
         for (int c = 0; c < 5; ++c) W(r, c) = (D(r, c) - (r == c ? 1 : 0)) / (root[r] * root[c]);
       fill();

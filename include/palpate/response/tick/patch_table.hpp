@@ -3,7 +3,7 @@
 
 /// @file  How far the body's correction w lets a contact give way: means over patches of any size, tabulated.
 
-#include <palpate/elasticity/near_field.hpp>
+#include <palpate/elasticity/flat_punch.hpp>
 #include <palpate/response/setup/moment_loads.hpp>
 #include <palpate/response/setup/parallel.hpp>
 #include <palpate/response/tick/bent_edges.hpp>
@@ -289,10 +289,10 @@ class PatchTable {
       return patch;
     }
     const Vec3<double> t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
-    for (const auto& p : disc_points()) {
+    for (const auto& p : flat_punch_points()) {
       const TouchPlace at = touch.locate(node.source + s * (p[0] * t1 + p[1] * t2));
       for (std::size_t c = 0; c < 3; ++c)
-        add(patch, at.node[c], at.weight[Eigen::Index(c)] / double(disc_points().size()));
+        add(patch, at.node[c], at.weight[Eigen::Index(c)] / double(flat_punch_points().size()));
     }
     return patch;
   }

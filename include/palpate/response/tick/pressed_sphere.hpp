@@ -74,23 +74,23 @@ PressedSphere press_sphere(const ResponseField& field, const Contacts& contacts,
     // a half. A body that bends easily would else be thrown aside.
     Mat3<double> leaning = R / c.ball * P * (bent * c.w - moved.tilting);
     leaning -= c.m * (c.m.transpose() * leaning);
-    leaning *= fading(leaning.squaredNorm(), 0.25);
+    leaning *= smooth_limit(leaning.squaredNorm(), 0.25);
     Vec3<double> lean = (Mat3<double>::Identity() - leaning).inverse() * (leaning * c.m);
-    lean *= fading(lean.squaredNorm(), 0.0625);
+    lean *= smooth_limit(lean.squaredNorm(), 0.0625);
     c.P += P * lean;
     const Vec3<double> slid = tangential(Vec3<double>(c.w * c.P), c.m),
                        slope = tangential(Vec3<double>(moved.tilting * c.P), c.m);
     aside = c.ball * lean - slid;
-    aside *= fading(aside.squaredNorm(), 0.25 * c.a * c.a);
+    aside *= smooth_limit(aside.squaredNorm(), 0.25 * c.a * c.a);
     radial = moved.radial;
     local = depth - std::clamp(P * own, -depth, depth);  // held as it is in sphere_contact.hpp
     if (pass == passes) break;
     lifted = 0.5 * (c.ball * lean.squaredNorm() + bent * aside.squaredNorm()) + lean.dot(slid) +
              2 * slope.dot(aside) + 1.5 * slope.dot(slid);
-    lifted *= fading(lifted * lifted, 0.01 * depth * depth);
-    const double most = 0.25 * disc_compliance(c.a, nu).normal;
+    lifted *= smooth_limit(lifted * lifted, 0.01 * depth * depth);
+    const double most = 0.25 * flat_punch_compliance(c.a, nu).normal;
     stiffer = 8.0 / 3 * k->ball_pull * outward(nu) * local * radial.dot(c.m);
-    stiffer *= fading(stiffer * stiffer, most * most);
+    stiffer *= smooth_limit(stiffer * stiffer, most * most);
   }
   c.a = (std::max)(out.radius, 1e-9);
   if (k == nullptr) return {out, Vec3<double>::Zero()};

@@ -13,7 +13,7 @@
 /// by a small penalty.
 
 #include <palpate/core/cholesky.hpp>
-#include <palpate/elasticity/near_field.hpp>
+#include <palpate/core/vector.hpp>
 #include <palpate/response/setup/element_mesh.hpp>
 
 namespace palpate {

@@ -20,7 +20,7 @@ namespace palpate::detail {
 /// most 10 done. Eigen's solver is as fast for 3 to 6 rows, and costs each including file 13 s of gcc 12.
 /// Source: [golub2013], 8.5.
 template <class M>
-void hold_above(M& C, double least) noexcept {
+void bound_below(M& C, double least) noexcept {
   constexpr Eigen::Index n = M::RowsAtCompileTime;
   M A = C, V = M::Identity();  // V^T C V = A
   const auto rotate = [](double c, double s, double* x, double* y) {
@@ -60,7 +60,7 @@ void hold_above(M& C, double least) noexcept {
 }
 
 /// True when C - least I is positive definite (Sylvester).
-[[nodiscard]] inline bool is_above(const Mat3<double>& C, double least) noexcept {
+[[nodiscard]] inline bool is_bounded_below(const Mat3<double>& C, double least) noexcept {
   const double a = C(0, 0) - least, b = C(1, 1) - least, c = C(2, 2) - least;
   const double minor = a * b - C(1, 0) * C(1, 0);
   const double det =
@@ -70,7 +70,7 @@ void hold_above(M& C, double least) noexcept {
 
 /// (1 + r^8)^(-1/8), r^2 = size2 / most2 >= 0: what keeps a vector of squared length size2 below most2; 1
 /// where it is.
-[[nodiscard]] inline double fading(double size2, double most2) noexcept {
+[[nodiscard]] inline double smooth_limit(double size2, double most2) noexcept {
   const double r2 = size2 / (most2 + (std::numeric_limits<double>::min)()), r8 = r2 * r2 * r2 * r2;
   // Most are small, and roots take their time: the series, to the last digit.
   if (r8 < 1e-3) return 1 + r8 * (-1. / 8 + r8 * (9. / 128 + r8 * (-51. / 1024 + r8 * (1275. / 32768))));

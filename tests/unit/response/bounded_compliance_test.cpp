@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <palpate/response/tick/held_compliance.hpp>
+#include <palpate/response/tick/bounded_compliance.hpp>
 
 #include "support/check.hpp"
 
@@ -40,7 +40,7 @@ double worst_of_known(int tries) {
     for (int i = 0; i < N; ++i) kept[i] = (std::max)(std::abs(lambda[i]), least);
     Square<N> C = Q * lambda.asDiagonal() * Q.transpose();
     C = (0.5 * (C + C.transpose())).eval();
-    detail::hold_above(C, least);
+    detail::bound_below(C, least);
     const Square<N> expected = Q * kept.asDiagonal() * Q.transpose();
     worst = (std::max)(worst, (C - expected).cwiseAbs().maxCoeff() / lambda.cwiseAbs().maxCoeff());
   }
@@ -48,28 +48,35 @@ double worst_of_known(int tries) {
 }
 }  // namespace
 
-TEST_CASE("held compliance: eigenvalues one by one, whatever their vectors") {
+TEST_CASE("bounded compliance: eigenvalues one by one, whatever their vectors") {
   // The rotations stop at 1e-9 of the diagonal.
   CHECK(worst_of_known<3>(300) < 1e-8);
   CHECK(worst_of_known<5>(300) < 1e-8);
   CHECK(worst_of_known<12>(300) < 1e-8);
 }
 
-TEST_CASE("held compliance: to the bit what it was where nothing is too small; diagonal; not a number") {
+TEST_CASE("bounded compliance: to the bit what it was where nothing is too small; diagonal; not a number") {
   std::mt19937 random(1);
   const Square<5> Q = turned<5>(random);
   Eigen::Matrix<double, 5, 1> lambda;
   lambda << 1, 2, 3, 4, 5;
   const Square<5> C = Q * lambda.asDiagonal() * Q.transpose();
   Square<5> held = C;
-  detail::hold_above(held, 0.5);
+  detail::bound_below(held, 0.5);
   CHECK(held == C);
 
   Mat3<double> diagonal = Vec3<double>(4, -3, 0).asDiagonal();
-  detail::hold_above(diagonal, 1.0);
+  detail::bound_below(diagonal, 1.0);
   CHECK(diagonal == Mat3<double>(Vec3<double>(4, 3, 1).asDiagonal()));
 
   Mat3<double> none = Mat3<double>::Constant(std::numeric_limits<double>::quiet_NaN());
-  detail::hold_above(none, 1.0);  // ends
+  detail::bound_below(none, 1.0);  // ends
   CHECK(!(none(0, 0) == none(0, 0)));
+}
+
+TEST_CASE("smooth limit: its series and its roots agree with the power to the last digit") {
+  for (double size2 = 1e-4; size2 < 100; size2 *= 1.01) {
+    const long double exact = std::pow(1 + std::pow(static_cast<long double>(size2 / 3), 4), -0.125L);
+    CHECK_ABSOLUTE(detail::smooth_limit(size2, 3), double(exact), test::ulps<double>(2));
+  }
 }
