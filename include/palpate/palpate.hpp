@@ -44,6 +44,7 @@
 #include <palpate/law/friction/coulomb.hpp>
 #include <palpate/law/friction/power_law.hpp>
 #include <palpate/law/friction/slip.hpp>
+#include <palpate/law/friction/skew.hpp>
 #include <palpate/law/map/duffing_map.hpp>
 #include <palpate/law/map/hertz_map.hpp>
 

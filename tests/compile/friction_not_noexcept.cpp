@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // expect: HasStaticLimit
 // expect-clang: may throw an exception
-#include <palpate/law/friction/concept.hpp>
+#include <palpate/law/friction/skew.hpp>
+#include <palpate/law/friction/slip.hpp>
 
 #ifdef PALPATE_MUST_FAIL
 #define MAYBE_NOEXCEPT
@@ -11,6 +12,8 @@
 
 struct Rough {
   using Scalar = double;
+  using Skew = palpate::ByComponents;
+  using Slip = palpate::ReturnMapping;
   static constexpr bool active = true;
   double static_limit(double normal_force) const MAYBE_NOEXCEPT { return normal_force; }
   double sliding_limit(double normal_force) const noexcept { return normal_force / 2; }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // expect: HasMaxCoefficient
 // expect-clang: same_as
-#include <palpate/law/friction/concept.hpp>
+#include <palpate/law/friction/skew.hpp>
+#include <palpate/law/friction/slip.hpp>
 
 #ifdef PALPATE_MUST_FAIL
 using Result = double;
@@ -11,6 +12,8 @@ using Result = float;
 
 struct Rough {
   using Scalar = float;
+  using Skew = palpate::ByComponents;
+  using Slip = palpate::ReturnMapping;
   static constexpr bool active = true;
   float static_limit(float normal_force) const noexcept { return normal_force; }
   float sliding_limit(float normal_force) const noexcept { return normal_force / 2; }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 // expect: HasActive
-// expect: F::active
-#include <palpate/law/friction/concept.hpp>
+// expect: P::active
+#include <palpate/law/friction/skew.hpp>
+#include <palpate/law/friction/slip.hpp>
 
 struct Rough {
   using Scalar = double;
+  using Skew = palpate::ByComponents;
+  using Slip = palpate::ReturnMapping;
 #ifndef PALPATE_MUST_FAIL
   static constexpr bool active = true;
 #endif

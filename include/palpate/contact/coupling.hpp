@@ -11,9 +11,11 @@
 /// The stress forces have no potential (docs/beams.md), so friction's promise of passivity holds for
 /// independent regions only.
 
-#include <palpate/core/scalar.hpp>
+#include <palpate/core/absent.hpp>
+#include <palpate/core/vector.hpp>
 
 #include <concepts>
+#include <cstddef>
 #include <span>
 
 namespace palpate {
@@ -24,20 +26,52 @@ struct IndependentRegions {
   struct Result {};
 };
 
-/// A coupling is absent when `active` is false; otherwise `share()` takes the regions' contacts and gives,
-/// per contact, the force on the tool that the others pass on (`Result::from_others` [N]).
-template <class C>
-concept RegionForceCoupling =
-    std::copyable<C> &&
-    requires {
-      { C::active } -> std::convertible_to<bool>;
-    } &&
-    (!C::active ||
-     requires(const C& coupling, std::span<const typename C::Contact> contacts, typename C::Result& result) {
-       { coupling.share(contacts, result) } noexcept;
-       result.from_others[0];
-     });
+/// A region as the coupling sees it: `{p0, -F_c, D, F_cn}`, [m], [N], [m], [N].
+template <class C, class S>
+concept HasContact = std::default_initializable<typename C::Contact> && requires(const Vec3<S>& v, S s) {
+  (typename C::Contact{v, v, v, s});
+};
 
-static_assert(RegionForceCoupling<IndependentRegions>);
+/// `Result::from_others`: per region, the force on the tool that the others pass on [N].
+template <class C, class S>
+concept HasFromOthers = std::default_initializable<typename C::Result> &&
+                        requires(const typename C::Result& result, std::size_t j) {
+                          { result.from_others.size() } noexcept -> std::convertible_to<std::size_t>;
+                          { result.from_others[j] } -> std::convertible_to<const Vec3<S>&>;
+                        };
+
+/// Fills the result for these regions, at most as many as there are contacts.
+template <class C>
+concept HasShare =
+    requires(const C& coupling, std::span<const typename C::Contact> contacts, typename C::Result& result) {
+      { coupling.share(contacts, result) } noexcept;
+    };
+
+namespace detail {
+/// Checked in the place of a coupling that is absent.
+template <class S>
+struct NoCoupling {
+  struct Contact {
+    Vec3<S> origin, load, displacement;
+    S normal_force;
+  };
+  struct Result {
+    std::span<const Vec3<S>> from_others;
+  };
+  void share(std::span<const Contact>, Result&) const noexcept;
+};
+template <class C, class S>
+using CheckedCoupling = ActiveOrT<C, NoCoupling<S>>;
+}  // namespace detail
+
+/// A coupling is absent when `active` is false; then an empty `Result` is all that is asked of it.
+template <class C, class S>
+concept RegionForceCoupling =
+    std::copyable<C> && HasActive<C> && std::default_initializable<typename C::Result> &&
+    HasContact<detail::CheckedCoupling<C, S>, S> && HasFromOthers<detail::CheckedCoupling<C, S>, S> &&
+    HasShare<detail::CheckedCoupling<C, S>>;
+
+static_assert(RegionForceCoupling<IndependentRegions, float> &&
+              RegionForceCoupling<IndependentRegions, double>);
 
 }  // namespace palpate

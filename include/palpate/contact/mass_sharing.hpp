@@ -39,11 +39,19 @@ struct EqualSharing {
   }
 };
 
-template <class W>
-concept MassSharing = requires {
-  { W::weight(1.0, 1.0) } noexcept -> std::same_as<double>;
-  { W::norm(1.0) } noexcept -> std::same_as<double>;
+template <class W, class S>  // of a point: (A_i, A_0) [m^2] -> [-]
+concept HasWeight = requires(S area) {
+  { W::weight(area, area) } noexcept -> std::same_as<S>;
 };
+
+template <class W, class S>  // of all points of a region: (n) -> [-]
+concept HasNorm = requires(S points) {
+  { W::norm(points) } noexcept -> std::same_as<S>;
+};
+
+/// Static functions, templates of the scalar.
+template <class W>
+concept MassSharing = HasWeight<W, float> && HasWeight<W, double> && HasNorm<W, float> && HasNorm<W, double>;
 
 static_assert(MassSharing<AreaSharing> && MassSharing<EqualSharing>);
 

@@ -46,12 +46,20 @@ struct Regions {
   double distance;  ///< threshold r [m] of section II: points strictly nearer than r belong together
 };
 
+namespace detail {
 template <class T>
-concept Topology = requires {
-  { T::max_regions } -> std::convertible_to<std::size_t>;
-  typename T::Sharing;
-  typename T::template Tool<double>;
-} && MassSharing<typename T::Sharing>;
+inline constexpr bool is_shipped_topology = false;
+template <>
+inline constexpr bool is_shipped_topology<SinglePoint> = true;
+template <MassSharing W>
+inline constexpr bool is_shipped_topology<SingleRegion<W>> = true;
+template <std::size_t N, MassSharing W>
+inline constexpr bool is_shipped_topology<Regions<N, W>> = true;
+}  // namespace detail
+
+/// One of the three above: the solver has a way of collecting points for each of them and for no other.
+template <class T>
+concept Topology = detail::is_shipped_topology<T>;
 
 /// True for topologies that cluster (`Regions<N>`).
 template <class T>

@@ -18,7 +18,7 @@ namespace palpate {
 /// point within r of c [m], in object coordinates. c and r are finite, r >= 0. `FclTree` and `BulletTree` are
 /// in adapters/.
 template <class T, class S>
-concept CandidateTree = requires(const T& tree, const Vec3<S>& c, S r) {
+concept CandidateTree = std::move_constructible<T> && requires(const T& tree, const Vec3<S>& c, S r) {
   { tree.touches(c, r) } noexcept -> std::same_as<bool>;
 };
 

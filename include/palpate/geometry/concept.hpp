@@ -174,8 +174,8 @@ concept HasMesh = requires(const B& body, std::size_t vertices) {
 
 /// What the force needs of the elastic object.
 template <class B>
-concept ContactSurface =
-    Real<typename B::Scalar> && HasClosest<B> && HasPenetration<B> && HasSeparated<B> && HasReach<B>;
+concept ContactSurface = Real<typename B::Scalar> && HasClosest<B> && HasPenetration<B> && HasSeparated<B> &&
+                         HasReach<B> && std::move_constructible<B>;
 
 /// An exact surface: all of that in closed form or to rounding, with its differential geometry.
 template <class B>

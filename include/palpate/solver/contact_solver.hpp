@@ -64,7 +64,8 @@ struct TickResult {
 /// is forgotten and begins anew at the next usable pose.
 template <ContactSurface Object, ForceModel Force,
           FrictionLaw Friction = Frictionless<typename Object::Scalar>, Topology Contacts = SinglePoint,
-          WrenchPolicy Acting = AtContact, RegionForceCoupling Coupling = IndependentRegions>
+          WrenchPolicy Acting = AtContact,
+          RegionForceCoupling<typename Object::Scalar> Coupling = IndependentRegions>
   requires std::same_as<typename Object::Scalar, typename Force::Scalar> &&
            std::same_as<typename Object::Scalar, typename Friction::Scalar>
 class ContactSolver {
@@ -333,7 +334,7 @@ class ContactSolver {
       if (limit > S(0))
         strength = (std::max)(strength, (std::min)(held / limit, S(1) / (std::numeric_limits<S>::min)()));
       anchor.slip = {sliding, strength};
-      const S stretch = anchor.slip.template hold<Skew>(law, depth, held, energy);
+      const S stretch = carried_stretch<Skew>(law, depth, held, energy, anchor.slip);
       anchor.slip.slid = stretch;
       anchor.origin = anchor.tip + stretch * along + depth * anchor.normal;
     }

@@ -5,7 +5,8 @@
 
 #include <palpate/core/error.hpp>
 #include <palpate/law/friction/concept.hpp>
-#include <palpate/law/friction/fwd.hpp>
+#include <palpate/law/friction/skew.hpp>
+#include <palpate/law/friction/slip.hpp>
 
 namespace palpate {
 
@@ -22,7 +23,7 @@ namespace palpate {
 /// Bad parameters: SetupError. Does not model: dependence on speed, waiting time or contact area.
 /// Source: [johnson1985].
 ///
-/// @tparam Slip  slip rule, @tparam Skew  skew rule: see law/friction/slip.hpp.
+/// @tparam Slip_  slip rule, @tparam Skew_  skew rule: see law/friction/concept.hpp.
 template <Real S, class Slip_ = ReturnMapping, class Skew_ = ByComponents>
 class CoulombFriction {
  public:

@@ -5,7 +5,8 @@
 
 #include <palpate/core/error.hpp>
 #include <palpate/law/friction/concept.hpp>
-#include <palpate/law/friction/fwd.hpp>
+#include <palpate/law/friction/skew.hpp>
+#include <palpate/law/friction/slip.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -35,7 +36,7 @@ namespace palpate {
 /// CoulombFriction with mu_S = K, to the bit. Bad parameters: SetupError. Does not model: dependence on
 /// speed, waiting time or apparent area. Source: [luo2005] IV.B; [howell1953].
 ///
-/// @tparam Slip  slip rule, @tparam Skew  skew rule: see law/friction/slip.hpp.
+/// @tparam Slip_  slip rule, @tparam Skew_  skew rule: see law/friction/concept.hpp.
 template <Real S, class Slip_ = ReturnMapping, class Skew_ = ByComponents>
 class PowerLawFriction {
  public:
