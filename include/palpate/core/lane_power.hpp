@@ -10,6 +10,7 @@
 
 #include <palpate/core/lane_polynomial.hpp>
 #include <palpate/core/lane_register.hpp>
+#include <palpate/core/simd_math.hpp>
 
 #include <array>
 #include <bit>
@@ -21,40 +22,6 @@
 #include <type_traits>
 
 namespace palpate::detail {
-
-/// How a number lies in memory: exponent plus `bias`, then `mantissa` bits. A whole number n added to `shift`
-/// is n + bias in the lowest of them. (-ffast-math would take such a sum apart: hence the barriers.)
-template <Real S>
-struct ExponentBits {
-  using Bits = std::conditional_t<std::same_as<S, float>, std::uint32_t, std::uint64_t>;
-  static constexpr int mantissa = std::numeric_limits<S>::digits - 1;
-  static constexpr int bias = std::numeric_limits<S>::max_exponent - 1;
-  static constexpr Bits whole = Bits{bias + mantissa} << mantissa;  // of 2^mantissa
-  static constexpr S shift = std::bit_cast<S>(whole) + S(bias);
-};
-
-/// log2((1 + t) / (1 - t)) / t as a polynomial in t^2, for numbers between sqrt(1/2) and sqrt(2).
-template <Real S>
-inline constexpr auto log2_series = [] {
-  constexpr std::size_t terms = std::same_as<S, float> ? 4 : 8;  // what is left out: below 1e-9, 2e-18
-  std::array<long double, 2 * terms + 9> taylor{};
-  for (std::size_t k = 0; k < taylor.size(); k += 2)
-    taylor[k] = 2 * std::numbers::log2e_v<long double> / static_cast<long double>(k + 1);
-  const auto best = economised<2 * terms - 1>(taylor, 0.1716L);  // (sqrt(2) - 1) / (sqrt(2) + 1)
-  std::array<S, terms> c{};
-  for (std::size_t k = 0; k < terms; ++k) c[k] = static_cast<S>(best[2 * k]);
-  return c;
-}();
-
-/// 2^x for |x| <= 1/2.
-template <Real S>
-inline constexpr auto exp2_series = [] {
-  constexpr std::size_t terms = std::same_as<S, float> ? 8 : 12;  // what is left out: below 1e-10, 5e-18
-  std::array<long double, terms + 6> taylor{1};
-  for (std::size_t k = 1; k < taylor.size(); ++k)
-    taylor[k] = taylor[k - 1] * std::numbers::ln2_v<long double> / static_cast<long double>(k);
-  return rounded<S>(economised<terms>(taylor, 0.5L));
-}();
 
 /// log2 x, x > 0 normal: x = 2^n m, sqrt(1/2) <= m < sqrt(2), and with t = (m - 1) / (m + 1)
 ///
