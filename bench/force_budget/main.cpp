@@ -22,7 +22,7 @@
 
 #include <palpate/geometry/mesh_surface.hpp>
 #include <palpate/geometry/sampled_surface.hpp>
-#include <palpate/luo_xiao/beam/regions.hpp>
+#include <palpate/luo_xiao/beam/region_skeletons.hpp>
 
 #include <algorithm>
 #include <array>

@@ -6,7 +6,7 @@
 
 #include <palpate/detection/swept_pose.hpp>
 #include <palpate/device/energy_limit.hpp>
-#include <palpate/luo_xiao/beam/regions.hpp>
+#include <palpate/luo_xiao/beam/region_skeletons.hpp>
 #include <palpate/palpate.hpp>
 
 #include <optional>

@@ -59,8 +59,8 @@
 #include <palpate/luo_xiao/beam/section.hpp>
 #include <palpate/luo_xiao/beam/rectangular_section.hpp>
 #include <palpate/luo_xiao/beam/skeleton.hpp>
-#include <palpate/luo_xiao/beam/regions.hpp>
-#include <palpate/luo_xiao/beam/release.hpp>
+#include <palpate/luo_xiao/beam/region_skeletons.hpp>
+#include <palpate/luo_xiao/beam/end_release.hpp>
 #include <palpate/luo_xiao/interpolation/linear.hpp>
 #include <palpate/luo_xiao/interpolation/phong.hpp>
 #include <palpate/luo_xiao/interpolation/smooth.hpp>

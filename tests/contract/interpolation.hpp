@@ -64,11 +64,11 @@ void check_interpolation(const Body& body, const Make& make, long double toleran
   // Corners and contact are vertices of their own, so that the field there can be read.
   const auto at_corner = static_cast<std::uint32_t>(mesh.vertices.size());
   for (const auto& point : points) mesh.vertices.push_back(point.position);
-  const Vec3<S> place =
+  const Vec3<S> position =
       body.closest(body.lower() + Vec3<S>(S(0.8), S(0.95), S(0.7)).cwiseProduct(body.upper() - body.lower()))
           .position;
   const auto at_contact = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.push_back(place);
+  mesh.vertices.push_back(position);
   const auto interpolation = make(make_partition(body, mesh));
   using I = std::remove_cvref_t<decltype(interpolation)>;
   const auto& partition = interpolation.partition();
@@ -82,7 +82,7 @@ void check_interpolation(const Body& body, const Make& make, long double toleran
   std::vector<Vec3<S>> corners(points.size()), still(points.size(), Vec3<S>::Zero());
   for (auto& u : corners) u = vector(1e-3);
   ContactDisplacement<S> contact{
-      .place = place, .normal = shading_normal(body, place), .displacement = vector(4e-3)};
+      .position = position, .normal = shading_normal(body, position), .displacement = vector(4e-3)};
   const S largest = S(4e-3);
   const auto field = field_of(interpolation, corners, contact);
 
@@ -110,7 +110,7 @@ void check_interpolation(const Body& body, const Make& make, long double toleran
     for (int entry = 0; entry < 9; ++entry) {
       ContactDisplacement<S> spoilt = contact;
       std::vector<Vec3<S>> u = corners;
-      (entry < 3 ? spoilt.place : entry < 6 ? spoilt.displacement : u[0])[entry % 3] = bad;
+      (entry < 3 ? spoilt.position : entry < 6 ? spoilt.displacement : u[0])[entry % 3] = bad;
       typename I::Load load;
       interpolation.prepare(u, spoilt, load);
       CHECK(!interpolation.moves(load, 0));
@@ -127,7 +127,7 @@ void check_interpolation(const Body& body, const Make& make, long double toleran
   ContactDisplacement<S> other = contact;
   other.displacement *= S(1.5);
   interpolation.prepare(corners, other, two);
-  CHECK(!interpolation.same(one, two, partition.locate(place).face));
+  CHECK(!interpolation.same(one, two, partition.locate(position).face));
   // Where `same` says so, it is.
   const auto field_two = field_of(interpolation, two);
   for (std::size_t f = 0; f < partition.faces().size(); ++f) {
@@ -159,7 +159,7 @@ void check_interpolation(const Body& body, const Make& make, long double toleran
   auto turned_corners = corners;
   for (auto& u : turned_corners) u = turn * u;
   ContactDisplacement<S> turned_contact = contact;
-  turned_contact.place = turn * contact.place;
+  turned_contact.position = turn * contact.position;
   turned_contact.normal = turn * contact.normal;
   turned_contact.displacement = turn * contact.displacement;
   const auto turned_field = field_of(turned_interpolation, turned_corners, turned_contact);
@@ -169,7 +169,7 @@ void check_interpolation(const Body& body, const Make& make, long double toleran
                   v = turned_field[slot_of(turned_interpolation.partition(), vertex)];
     worst = std::max(worst, static_cast<long double>((turn * u - v).norm() / largest));
   }
-  // The fields' slope with respect to places is up to 1/fade, so their rounding counts ten times.
+  // The fields' slope with respect to positions is up to 1/fade, so their rounding counts ten times.
   CHECK(worst <= 20 * tolerance);
 }
 

@@ -46,7 +46,7 @@ double steepest(const I& interpolation, const Body& body) {
         last = p;
         p = body.closest(p + step * heading).position;
       }
-      contact.place = p;
+      contact.position = p;
       contact.normal = shading_normal(body, p);
       after = test::field_of(interpolation, corners, contact);
       const double moved = tick > 0 ? (p - last).norm() : 0.0;
@@ -73,7 +73,7 @@ const Box<S> box({.half = {0.02, 0.02, 0.02}});
 
 }  // namespace
 
-// d mu / d P <= 1/fade = 10, and weights turn over 2 to 4 times faster than the place in units of the body;
+// d mu / d P <= 1/fade = 10, and weights turn over 2 to 4 times faster than the position in units of the body;
 // corners and contact may each be as large as the unit of displacement.
 TEST_CASE("linear field under 10,000 wandering contacts: ellipsoid") {
   check_paths<LinearInterpolation<S>>(ellipsoid, 40);

@@ -9,19 +9,19 @@
 
 namespace palpate {
 
-/// Places in, unit normals out, all vertices at once; where a vertex's triangles have collapsed, its normal
+/// Positions in, unit normals out, all vertices at once; where a vertex's triangles have collapsed, its normal
 /// at rest. Set-up reports a mesh that is not closed.
 class MeshNormals {
  public:
   MeshNormals() = default;
   MeshNormals(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertices)
       : normals_(VertexRings(triangles, vertices)),
-        places_(std::array{VertexRun{0, vertices}}, normals_.packed_reads(vertices)),
+        positions_(std::array{VertexRun{0, vertices}}, normals_.packed_reads(vertices)),
         rest_(vertices) {}
 
   /// To be filled by the caller: all vertices are one run.
-  [[nodiscard]] VertexPlaces& places() noexcept { return places_; }
-  /// The places are those at rest. Set-up only.
+  [[nodiscard]] VertexPositions& positions() noexcept { return positions_; }
+  /// The positions are those at rest. Set-up only.
   void keep_rest() noexcept {
     each([this](const auto& vertex, const auto& x, const auto& y, const auto& z) {
       for (std::uint32_t k = 0; k < detail::entries<std::remove_cvref_t<decltype(x)>>; ++k)
@@ -41,15 +41,15 @@ class MeshNormals {
     const auto to = writer(out);
     for (std::size_t v = 0; v < rest_.size(); ++v) to.put(v, T(rest_[v].x), T(rest_[v].y), T(rest_[v].z));
   }
-  /// After `VertexPlaces::set_four`, before `write`: the places into the caller's buffer.
+  /// After `VertexPositions::set_four`, before `write`: the positions into the caller's buffer.
   template <Real T>
-  void write_places(const VertexBuffer<T>& out) noexcept {
+  void write_positions(const VertexBuffer<T>& out) noexcept {
     const detail::VertexWriter<T> to(out.positions, out.position_stride);
-    places_.complete(normals_.has_rows(),
-                     [&to, size = rest_.size()](std::size_t v, const auto& x, const auto& y, const auto& z) {
-                       if (v + 4 <= size) return to.put_row(v, x, y, z);
-                       for (std::size_t k = 0; v + k < size; ++k) to.put(v + k, T(x[k]), T(y[k]), T(z[k]));
-                     });
+    positions_.complete(normals_.has_rows(), [&to, size = rest_.size()](std::size_t v, const auto& x,
+                                                                        const auto& y, const auto& z) {
+      if (v + 4 <= size) return to.put_row(v, x, y, z);
+      for (std::size_t k = 0; v + k < size; ++k) to.put(v + k, T(x[k]), T(y[k]), T(z[k]));
+    });
   }
 
  private:
@@ -60,11 +60,11 @@ class MeshNormals {
   template <class Emit>
   void each(const Emit& emit) const noexcept {
     normals_.each_unit(
-        normals_.all(), places_, [this](std::size_t v) { return rest_[v]; }, emit);
+        normals_.all(), positions_, [this](std::size_t v) { return rest_[v]; }, emit);
   }
 
   VertexNormals normals_;
-  VertexPlaces places_;
+  VertexPositions positions_;
   std::vector<Packed3> rest_;
 };
 

@@ -84,10 +84,10 @@ class VertexRings {
 /// two cross products for six neighbours instead of six, and every product is of short vectors. No equation
 /// of the paper; elementary geometry.
 ///
-/// In float, whatever the scalar: a place 0.1 m from the origin is known to 4 nm, and a normal between edges
+/// In float, whatever the scalar: a position 0.1 m from the origin is known to 4 nm, and a normal between edges
 /// of 1 mm to 1e-5 rad; no display shows more.
 ///
-/// Eight vertices or more in a row whose rings are the same but for a shift by one, and in one run of places,
+/// Eight vertices or more in a row whose rings are the same but for a shift by one, and in one run of positions,
 /// are done coordinate by coordinate, as most are in a mesh laid out in rows; the others by fours with rings
 /// of one size, wherever they are.
 class VertexNormals {
@@ -105,13 +105,13 @@ class VertexNormals {
     add(rings, vertices, {0, rings.size()});
   }
   /// Makes a group of vertices, in ascending order, ready. Set-up only. `run`: the one that is in
-  /// VertexPlaces when the group's turn comes; without it only packed places are read.
+  /// VertexPositions when the group's turn comes; without it only packed positions are read.
   Group add(const VertexRings& rings, const std::vector<std::uint32_t>& vertices, const VertexRun& run = {}) {
     const Group before = all();
     std::vector<std::uint32_t> others;
     for (std::size_t i = 0; i < vertices.size();) {
       const std::size_t count = row_from(rings, std::span(vertices).subspan(i), run);
-      if (count >= least_in_row) {
+      if (count >= min_in_row) {
         const std::uint32_t v = vertices[i];
         rows_.push_back(
             {v, static_cast<std::uint32_t>(count), list(rings[v], 1, run.first), size_of(rings[v])});
@@ -134,14 +134,14 @@ class VertexNormals {
     const Group after = all();
     return {before.row_end, after.row_end, before.four_end, after.four_end};
   }
-  /// Are coordinates read, not only packed places?
+  /// Are coordinates read, not only packed positions?
   [[nodiscard]] bool has_rows() const noexcept { return !rows_.empty(); }
   /// All groups.
   [[nodiscard]] Group all() const noexcept {
     return {0, static_cast<std::uint32_t>(rows_.size()), 0, static_cast<std::uint32_t>(fours_.size())};
   }
 
-  /// For each of the mesh's vertices, 1 if a group reads its packed place.
+  /// For each of the mesh's vertices, 1 if a group reads its packed position.
   [[nodiscard]] std::vector<std::uint8_t> packed_reads(std::size_t vertices) const {
     std::vector<std::uint8_t> reads(vertices);
     for (const Four& four : fours_) {
@@ -154,36 +154,36 @@ class VertexNormals {
   /// vertex(1) .., ascending where they are more than four, until all of the group have theirs, some more
   /// than once. One whose ring has collapsed has the normal rest(vertex).
   template <class Rest, class Emit>
-  void each_unit(const Group& group, const VertexPlaces& places, const Rest& rest,
+  void each_unit(const Group& group, const VertexPositions& positions, const Rest& rest,
                  const Emit& emit) const noexcept {
-    each<true>(group, places, rest, emit);
-    each<false>(group, places, rest, emit);
+    each<true>(group, positions, rest, emit);
+    each<false>(group, positions, rest, emit);
   }
   /// The same for those of a group that are read coordinate by coordinate: its run must be there, and nothing
   /// else.
   template <class Rest, class Emit>
-  void each_in_row(const Group& group, const VertexPlaces& places, const Rest& rest,
+  void each_in_row(const Group& group, const VertexPositions& positions, const Rest& rest,
                    const Emit& emit) const noexcept {
-    each<true>(group, places, rest, emit);
+    each<true>(group, positions, rest, emit);
   }
-  /// And for the others: all packed places must be there.
+  /// And for the others: all packed positions must be there.
   template <class Rest, class Emit>
-  void each_apart(const Group& group, const VertexPlaces& places, const Rest& rest,
+  void each_apart(const Group& group, const VertexPositions& positions, const Rest& rest,
                   const Emit& emit) const noexcept {
-    each<false>(group, places, rest, emit);
+    each<false>(group, positions, rest, emit);
   }
 
  private:
   struct Row {
     std::uint32_t vertex, count;
-    std::uint32_t ring, size;  // of the first one: where its neighbours' places in the run are listed
+    std::uint32_t ring, size;  // of the first one: where its neighbours' positions in the run are listed
   };
   struct Four {
     std::array<std::uint32_t, 4> vertex;
-    std::uint32_t ring, size;  // where the first one's neighbours' places are listed; the others follow
+    std::uint32_t ring, size;  // where the first one's neighbours' positions are listed; the others follow
   };
   static constexpr float collapsed = (std::numeric_limits<float>::min)();  // square of an area
-  static constexpr std::uint32_t least_in_row = 8, floats = sizeof(Packed3) / sizeof(float);
+  static constexpr std::uint32_t min_in_row = 8, floats = sizeof(Packed3) / sizeof(float);
 
   [[nodiscard]] static std::uint32_t size_of(std::span<const std::uint32_t> ring) {
     return static_cast<std::uint32_t>(ring.size());
@@ -255,17 +255,17 @@ class VertexNormals {
     return square;
   }
   template <bool InRow, class Rest, class Emit>
-  PALPATE_FLATTEN void each(const Group& group, const VertexPlaces& places, const Rest& rest,
+  PALPATE_FLATTEN void each(const Group& group, const VertexPositions& positions, const Rest& rest,
                             const Emit& emit) const noexcept {
     constexpr float much = (std::numeric_limits<float>::max)();
     detail::Float4 least{much, much, much, much};  // square of an area
     const Emit put = emit;  // in registers: what it writes might be any of it otherwise
-    each_area<InRow>(group, places, [&](const auto& vertex, auto& x, auto& y, auto& z) {
+    each_area<InRow>(group, positions, [&](const auto& vertex, auto& x, auto& y, auto& z) {
       detail::take_least(least, normalise(x, y, z));
       put(vertex, x, y, z);
     });
     if ((std::min)({least[0], least[1], least[2], least[3]}) > collapsed) return;
-    each_area<InRow>(group, places, [&](const auto& vertex, auto& x, auto& y, auto& z) {
+    each_area<InRow>(group, positions, [&](const auto& vertex, auto& x, auto& y, auto& z) {
       const auto square = normalise(x, y, z);
       bool any = false;
       for (std::uint32_t k = 0; k < detail::entries<std::remove_cvref_t<decltype(x)>>; ++k) {
@@ -287,30 +287,31 @@ class VertexNormals {
   }
   // work(vertex, x, y, z) with 2 A of the vertices vertex(0), vertex(1) ..
   template <bool InRow, class Work>
-  PALPATE_INLINE void each_area(const Group& group, const VertexPlaces& places,
+  PALPATE_INLINE void each_area(const Group& group, const VertexPositions& positions,
                                 const Work& work) const noexcept {
     if constexpr (InRow)
-      areas_in_row(group, places, work);
+      areas_in_row(group, positions, work);
     else
-      areas_apart(group, places, work);
+      areas_apart(group, positions, work);
   }
   template <class Work>
-  PALPATE_INLINE void areas_in_row(const Group& group, const VertexPlaces& places,
+  PALPATE_INLINE void areas_in_row(const Group& group, const VertexPositions& positions,
                                    const Work& work) const noexcept {
     using detail::FloatRegister, detail::WideRegister;
     for (const Row *at = rows_.data() + group.row_begin, *const end = rows_.data() + group.row_end; at < end;
          ++at) {
       const Row row = *at;
       if (row.count >= detail::entries<WideRegister>)
-        areas_of<WideRegister>(row, places, work);
+        areas_of<WideRegister>(row, positions, work);
       else
-        areas_of<FloatRegister>(row, places, work);
+        areas_of<FloatRegister>(row, positions, work);
     }
   }
   template <class V, class Work>
-  PALPATE_INLINE void areas_of(const Row& row, const VertexPlaces& places, const Work& work) const noexcept {
+  PALPATE_INLINE void areas_of(const Row& row, const VertexPositions& positions,
+                               const Work& work) const noexcept {
     const std::uint32_t* const ring = rings_.data() + row.ring;
-    const float *const px = places.axis(0), *const py = places.axis(1), *const pz = places.axis(2);
+    const float *const px = positions.axis(0), *const py = positions.axis(1), *const pz = positions.axis(2);
     with_size(row.size, [&](auto size) {
       const std::uint32_t last = row.count - detail::entries<V>;
       for (std::uint32_t from = 0;; from = (std::min)(from + detail::entries<V>, last)) {
@@ -322,11 +323,11 @@ class VertexNormals {
     });
   }
   template <class Work>
-  PALPATE_INLINE void areas_apart(const Group& group, const VertexPlaces& places,
+  PALPATE_INLINE void areas_apart(const Group& group, const VertexPositions& positions,
                                   const Work& work) const noexcept {
     using detail::Float4;
     const std::uint32_t* const rings = rings_.data();
-    const float* const p = &places.packed()->x;
+    const float* const p = &positions.packed()->x;
     for (const Four *at = fours_.data() + group.four_begin, *const end = fours_.data() + group.four_end;
          at < end; ++at) {
       const Four four = *at;
@@ -344,7 +345,7 @@ class VertexNormals {
   std::vector<Row> rows_;
   std::vector<Four> fours_;
   std::vector<std::uint32_t>
-      rings_;  // of rows, where in the run; of fours, where their packed places begin, in floats
+      rings_;  // of rows, where in the run; of fours, where their packed positions begin, in floats
 };
 
 }  // namespace palpate

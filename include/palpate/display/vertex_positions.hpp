@@ -17,23 +17,23 @@
 
 namespace palpate {
 
-/// A place [m] or a normal in one register's worth of memory.
+/// A position [m] or a normal in one register's worth of memory.
 struct alignas(16) Packed3 {
   float x = 0, y = 0, z = 0, unused = 0;
 };
 
-/// Vertices that follow each other, whose coordinates are in VertexPlaces together.
+/// Vertices that follow each other, whose coordinates are in VertexPositions together.
 struct VertexRun {
   std::size_t first = 0, count = 0;
 };
 
-/// Places as `VertexNormals` reads them: coordinate by coordinate, those of all vertices or of one run of
+/// Positions as `VertexNormals` reads them: coordinate by coordinate, those of all vertices or of one run of
 /// them after the other, and packed, one by one [m].
-class VertexPlaces {
+class VertexPositions {
  public:
-  VertexPlaces() = default;
-  /// `packed_reads`: for each vertex, 1 if its packed place is read (VertexNormals::packed_reads()).
-  VertexPlaces(std::span<const VertexRun> runs, std::span<const std::uint8_t> packed_reads) {
+  VertexPositions() = default;
+  /// `packed_reads`: for each vertex, 1 if its packed position is read (VertexNormals::packed_reads()).
+  VertexPositions(std::span<const VertexRun> runs, std::span<const std::uint8_t> packed_reads) {
     packed_.resize((packed_reads.size() + 3) / 4 * 4);
     std::size_t longest = 0;
     for (const VertexRun& run : runs) {
@@ -96,7 +96,7 @@ class VertexPlaces {
     detail::store_vector(&packed_[v[2]].x, z);
     detail::store_vector(&packed_[v[3]].x, none);
   }
-  /// emit(v, x, y, z) with each four places in a row, v a multiple of 4, the last perhaps past the last
+  /// emit(v, x, y, z) with each four positions in a row, v a multiple of 4, the last perhaps past the last
   /// vertex. What has only been packed gets its coordinates, if `axes`.
   template <class Emit>
   PALPATE_INLINE void complete(bool axes, const Emit& emit) noexcept {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Places and normals into a caller's buffer: one vertex, or four at once.
+/// @file  Positions and normals into a caller's buffer: one vertex, or four at once.
 
 #include <palpate/core/float_vector.hpp>
 #include <palpate/core/scalar.hpp>

@@ -275,8 +275,8 @@ class HalfSpaceDeformation {
         for (std::size_t v = 0; v < n; ++v) out[v] = x[v] + moves[v] * u[v];
     }
     if (p_.normals) {
-      normals_.places().set_row(0, n, now_[0].data(), now_[1].data(), now_[2].data());
-      normals_.places().pack(0);
+      normals_.positions().set_row(0, n, now_[0].data(), now_[1].data(), now_[2].data());
+      normals_.positions().pack(0);
     }
   }
 

@@ -3,8 +3,8 @@
 
 /// @file  The paper's deformation model: skeleton, released ends, interpolation, local neighbourhood, output.
 
-#include <palpate/luo_xiao/beam/regions.hpp>
-#include <palpate/luo_xiao/beam/release.hpp>
+#include <palpate/luo_xiao/beam/end_release.hpp>
+#include <palpate/luo_xiao/beam/region_skeletons.hpp>
 #include <palpate/luo_xiao/displacement_field.hpp>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ class BeamSkeletonDeformation {
   using S = Scalar;
   using D = typename I::Scalar;  ///< the display's scalar
   static constexpr bool active = true;
-  static constexpr std::size_t most_contacts = decltype(R::Result::loads)::capacity;
+  static constexpr std::size_t max_contacts = decltype(R::Result::loads)::capacity;
 
   struct Params {
     Vec3<S> fixed = Vec3<S>::Zero();  ///< o [m]
@@ -48,7 +48,7 @@ class BeamSkeletonDeformation {
       : p_(params),
         regions_(std::move(regions)),
         field_(std::move(interpolation), std::move(neighbourhood), mesh,
-               {.contacts = most_contacts, .normals = params.normals}) {
+               {.contacts = max_contacts, .normals = params.normals}) {
     const auto points = field_.partition().points();
     const auto& ends = regions_.skeleton().points();
     if (!is_finite(p_.fixed)) fail(name, "fixed must be finite");
@@ -57,10 +57,10 @@ class BeamSkeletonDeformation {
            static_cast<double>(ends.size()));
     for (std::size_t i = 0; i < points.size(); ++i) {
       if (ends[i].template cast<D>() != points[i].position)
-        fail_at(name, "skeleton and partition must have the same place", "extremal point", i);
+        fail_at(name, "skeleton and partition must have the same position", "extremal point", i);
     }
     released_.resize(points.size());
-    corners_.resize(points.size() * most_contacts);
+    corners_.resize(points.size() * max_contacts);
   }
 
   template <Real T>
@@ -76,8 +76,8 @@ class BeamSkeletonDeformation {
   template <Real T>
   Moved<S> write(std::span<const ContactState<S>> contacts, const VertexBuffer<T>& out) noexcept {
     Moved<S> result;
-    if (contacts.size() > most_contacts) result.status |= Status::region_overflow;
-    if (out.positions == nullptr || !take(contacts.first((std::min)(contacts.size(), most_contacts))))
+    if (contacts.size() > max_contacts) result.status |= Status::region_overflow;
+    if (out.positions == nullptr || !take(contacts.first((std::min)(contacts.size(), max_contacts))))
       return result;
     const std::size_t count = loaded_.size(), points = released_.size();
     regions_.share(std::span<const SkeletonContact<S>>(loaded_.begin(), count), result_);
@@ -129,8 +129,8 @@ class BeamSkeletonDeformation {
   R regions_;
   DisplacementField<I, N> field_;
   typename R::Result result_{};
-  FixedVector<SkeletonContact<S>, most_contacts> loaded_;     // of the last write, as the skeleton sees them
-  FixedVector<ContactDisplacement<D>, most_contacts> shown_;  // and as they are drawn
+  FixedVector<SkeletonContact<S>, max_contacts> loaded_;     // of the last write, as the skeleton sees them
+  FixedVector<ContactDisplacement<D>, max_contacts> shown_;  // and as they are drawn
   std::vector<Vec3<S>> released_;
   std::vector<Vec3<D>> corners_;
 };

@@ -52,8 +52,8 @@ class DisplacementField {
       fail(name, "mesh must be the partition's", static_cast<double>(mesh.vertices.size()));
     loads_.resize(p_.contacts);
     previous_.resize(p_.contacts);
-    dents_.resize(p_.contacts);
-    previous_dents_.resize(p_.contacts);
+    reductions_.resize(p_.contacts);
+    previous_reductions_.resize(p_.contacts);
     contacts_.reserve(p_.contacts);
     corners_.reserve(p_.contacts * partition.points().size());
     dirty_.assign(partition.faces().size(), 1);
@@ -64,7 +64,7 @@ class DisplacementField {
   template <Real T>
   void write_rest(const VertexBuffer<T>& out) noexcept {
     std::fill(previous_.begin(), previous_.end(), Load{});
-    std::fill(previous_dents_.begin(), previous_dents_.end(), Dent{});
+    std::fill(previous_reductions_.begin(), previous_reductions_.end(), Reduction{});
     previous_count_ = 0;
     contacts_.clear();
     corners_.clear();
@@ -75,8 +75,8 @@ class DisplacementField {
       const Face<S>& face = part.faces()[f];
       put(face, 0, face.count, part.rest_from(face, 0), out);
       if (p_.normals) {
-        normals_.place(0, face.count, part.rest_from(face, 0));
-        normals_.placed(f);
+        normals_.set_positions(0, face.count, part.rest_from(face, 0));
+        normals_.finish_face(f);
       }
       if (with_normals) normals_.write_in_row(part, f, out);
     }
@@ -103,7 +103,7 @@ class DisplacementField {
       const Face<S>& face = partition().faces()[f];
       for (std::size_t from = 0; from < face.count; from += block_size)
         write_block(f, from, (std::min)(block_size, face.count - from), extent, out);
-      if (p_.normals) normals_.placed(f);
+      if (p_.normals) normals_.finish_face(f);
       if (with_normals) normals_.write_in_row(partition(), f, out);
       moved.vertices += face.count;
     }
@@ -112,7 +112,7 @@ class DisplacementField {
       if (with_normals) normals_.write_apart(partition(), dirty_, out);
     }
     loads_.swap(previous_);
-    dents_.swap(previous_dents_);
+    reductions_.swap(previous_reductions_);
     previous_count_ = count;
     return moved;
   }
@@ -154,25 +154,25 @@ class DisplacementField {
     }
   };
 
-  struct Dent {  // V.B: where and how much the contact's displacement is reduced
-    Vec3<S> place = Vec3<S>::Zero();
-    S less = 0;    // 1 - w; 0: not at all
+  struct Reduction {  // V.B: where the contact's displacement is reduced, and by how much
+    Vec3<S> position = Vec3<S>::Zero();
+    S by = 0;      // 1 - w; 0: not at all
     S radius = 0;  // R
     [[nodiscard]] bool touches(const Face<S>& face) const noexcept {
       const S reach = radius + face.radius;
-      return less > S(0) && (place - face.centre).squaredNorm() < reach * reach;
+      return by > S(0) && (position - face.centre).squaredNorm() < reach * reach;
     }
     // 1 - (1 - w) b(r) at the vertices of a block.
     PALPATE_INLINE void scale(const Lists<const S>& rest, std::size_t count, S* out) const noexcept {
-      const S px = place.x(), py = place.y(), pz = place.z(), per_square = S(1) / (radius * radius),
-              most = less;
+      const S px = position.x(), py = position.y(), pz = position.z(), per_square = S(1) / (radius * radius),
+              reduced = by;
       for (std::size_t i = 0; i < count; i += V::lanes) {
         const V dx = V(rest[0] + i) - px, dy = V(rest[1] + i) - py, dz = V(rest[2] + i) - pz;
         const V inside = larger(S(1) - (dx * dx + dy * dy + dz * dz) * per_square, V{});
-        (S(1) - most * inside * inside).store(out + i);
+        (S(1) - reduced * inside * inside).store(out + i);
       }
     }
-    [[nodiscard]] bool operator==(const Dent&) const noexcept = default;
+    [[nodiscard]] bool operator==(const Reduction&) const noexcept = default;
   };
 
   // Keeps the input; false when it is the same as in the last tick.
@@ -184,14 +184,14 @@ class DisplacementField {
     corners_.assign(corners.begin(), corners.end());
     const std::size_t points = partition().points().size();
     for (std::size_t c = 0; c < p_.contacts; ++c) {
-      dents_[c] = Dent{};
+      reductions_[c] = Reduction{};
       loads_[c].active = false;
       if (c >= contacts.size()) continue;
       interpolation_.prepare(corners.subspan(c * points, points), contacts[c], loads_[c]);
       if constexpr (N::active) {
         const S w = neighbourhood_.factor(contacts[c]), radius = neighbourhood_.radius(contacts[c]);
         if (w < S(1) && radius > S(0) && is_drawable(contacts[c]))
-          dents_[c] = {contacts[c].place, S(1) - w, radius};
+          reductions_[c] = {contacts[c].position, S(1) - w, radius};
       }
     }
     active_ = contacts.size();
@@ -202,7 +202,8 @@ class DisplacementField {
     const Face<S>& face = partition().faces()[f];
     for (std::size_t c = 0; c < (std::max)(active_, previous_count_); ++c) {
       if (!interpolation_.same(previous_[c], loads_[c], f)) return true;
-      if (dents_[c] != previous_dents_[c] && (dents_[c].touches(face) || previous_dents_[c].touches(face)))
+      if (reductions_[c] != previous_reductions_[c] &&
+          (reductions_[c].touches(face) || previous_reductions_[c].touches(face)))
         return true;
     }
     return false;
@@ -226,22 +227,22 @@ class DisplacementField {
     Block<S> moved[3], scale;
     Lists<S> to{moved[0].value, moved[1].value, moved[2].value};
     if constexpr (std::same_as<S, float>) {
-      if (p_.normals) to = normals_.places_from(from);
+      if (p_.normals) to = normals_.positions_from(from);
     }
     const Lists<const S> there{to[0], to[1], to[2]};
     bool is_moved = false;
     for (std::size_t c = 0; c < active_; ++c) {
       if (!interpolation_.moves(loads_[c], f)) continue;
-      const bool dented = dents_[c].touches(face);
-      if (dented) dents_[c].scale(rest, count, scale.value);
-      interpolation_.add(loads_[c], f, from, count, dented ? scale.value : nullptr, is_moved ? there : rest,
-                         to);
+      const bool is_reduced = reductions_[c].touches(face);
+      if (is_reduced) reductions_[c].scale(rest, count, scale.value);
+      interpolation_.add(loads_[c], f, from, count, is_reduced ? scale.value : nullptr,
+                         is_moved ? there : rest, to);
       is_moved = true;
     }
     const Lists<const S>& at = is_moved ? there : rest;
     extent.take(at, count);
     put(face, from, count, at, out);
-    if (p_.normals) normals_.place(from, count, at);
+    if (p_.normals) normals_.set_positions(from, count, at);
   }
 
   static constexpr const char* name = "DisplacementField";
@@ -251,7 +252,7 @@ class DisplacementField {
   PALPATE_NO_UNIQUE_ADDRESS N neighbourhood_;
   PartitionNormals<S> normals_;
   std::vector<Load> loads_, previous_;
-  std::vector<Dent> dents_, previous_dents_;
+  std::vector<Reduction> reductions_, previous_reductions_;
   std::vector<ContactDisplacement<S>> contacts_;
   std::vector<Vec3<S>> corners_;
   std::vector<std::uint8_t> dirty_;

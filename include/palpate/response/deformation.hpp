@@ -55,8 +55,8 @@ class ResponseFieldDeformation {
     each_at_rest([&rest](std::size_t v, float x, float y, float z) {
       rest[0][v] = x, rest[1][v] = y, rest[2][v] = z;
     });
-    normals_.places().set_row(0, rest[0].size(), rest[0].data(), rest[1].data(), rest[2].data());
-    normals_.places().pack(0);
+    normals_.positions().set_row(0, rest[0].size(), rest[0].data(), rest[1].data(), rest[2].data());
+    normals_.positions().pack(0);
     normals_.keep_rest();
   }
 
@@ -87,7 +87,7 @@ class ResponseFieldDeformation {
     if (out.positions == nullptr || !is_new(pressed, count)) return moved;
     tick_.solve(pressed.data(), count, forces_.data());
     const bool with_normals = p_.normals && out.normals != nullptr;
-    Put<T> put(display_, out, with_normals ? &normals_.places() : nullptr);
+    Put<T> put(display_, out, with_normals ? &normals_.positions() : nullptr);
     tick_.each(display_, put);
     moved.vertices = display_.size();
     if (moved.vertices > 0) {
@@ -98,7 +98,7 @@ class ResponseFieldDeformation {
           Vec3<float>(-least_of(-high.x), -least_of(-high.y), -least_of(-high.z)).template cast<S>();
     }
     if (with_normals) {
-      normals_.write_places(out);
+      normals_.write_positions(out);
       normals_.write(out);
     }
     return moved;
@@ -120,10 +120,10 @@ class ResponseFieldDeformation {
     const float *at_x, *at_y, *at_z;  // at rest, by slot
     const std::uint32_t* vertex;
     detail::VertexWriter<T> to;
-    VertexPlaces* place;  // null: no normals
+    VertexPositions* place;  // null: no normals
     detail::Lane3 low, high;
 
-    Put(const ResponseDisplay& display, const VertexBuffer<T>& out, VertexPlaces* places) noexcept
+    Put(const ResponseDisplay& display, const VertexBuffer<T>& out, VertexPositions* places) noexcept
         : at_x(display.x()),
           at_y(display.y()),
           at_z(display.z()),

@@ -21,19 +21,19 @@ using palpate::test::ulps;
 namespace {
 
 template <Real S>
-void put(VertexPlaces& places, const MeshData<S>& mesh, std::size_t from, std::size_t count) {
+void put(VertexPositions& positions, const MeshData<S>& mesh, std::size_t from, std::size_t count) {
   std::array<std::vector<S>, 3> axis;
   for (std::size_t v = from; v < from + count; ++v)
     for (std::size_t k = 0; k < 3; ++k) axis[k].push_back(mesh.vertices[v][static_cast<int>(k)]);
-  places.set_row(0, count, axis[0].data(), axis[1].data(), axis[2].data());
+  positions.set_row(0, count, axis[0].data(), axis[1].data(), axis[2].data());
 }
 template <Real S>
-VertexPlaces places_of(const MeshData<S>& mesh) {
+VertexPositions positions_of(const MeshData<S>& mesh) {
   const std::size_t n = mesh.vertices.size();
-  VertexPlaces places(std::array{VertexRun{0, n}}, std::vector<std::uint8_t>(n, 1));
-  put(places, mesh, 0, n);
-  places.pack(0);
-  return places;
+  VertexPositions positions(std::array{VertexRun{0, n}}, std::vector<std::uint8_t>(n, 1));
+  put(positions, mesh, 0, n);
+  positions.pack(0);
+  return positions;
 }
 
 constexpr float nowhere = 7;
@@ -45,14 +45,14 @@ auto into(std::vector<Vec3<float>>& out) {
   };
 }
 std::vector<Vec3<float>> unit_normals(const VertexNormals& normals, const VertexNormals::Group& group,
-                                      const VertexPlaces& places, std::size_t count) {
+                                      const VertexPositions& positions, std::size_t count) {
   std::vector<Vec3<float>> out(count, Vec3<float>::Constant(nowhere));
-  normals.each_unit(group, places, at_rest, into(out));
+  normals.each_unit(group, positions, at_rest, into(out));
   return out;
 }
 std::vector<Vec3<float>> unit_normals(const MeshData<float>& mesh) {
   const VertexNormals normals(VertexRings(mesh.triangles, mesh.vertices.size()));
-  return unit_normals(normals, normals.all(), places_of(mesh), mesh.vertices.size());
+  return unit_normals(normals, normals.all(), positions_of(mesh), mesh.vertices.size());
 }
 
 }  // namespace
@@ -77,7 +77,7 @@ TEST_CASE("normal of a vertex is the sum over its triangles, on displaced meshes
     for (const std::uint32_t v : t) exact[v] += area;
   }
   const auto normals = unit_normals(mesh);
-  // Differences of places of 0.03 over edges of 0.003: 10 ulp each, a few of them.
+  // Differences of positions of 0.03 over edges of 0.003: 10 ulp each, a few of them.
   for (std::size_t v = 0; v < exact.size(); ++v)
     CHECK((normals[v].template cast<long double>() - exact[v].normalized()).norm() <= ulps<float>(100));
 }
@@ -86,7 +86,7 @@ TEST_CASE("normals of a fine mesh are the surface's, and outward") {
   const Ellipsoid<double> body({.axes = {0.03, 0.02, 0.02}});
   const auto mesh = body.mesh(5000);
   const VertexNormals normals(VertexRings(mesh.triangles, mesh.vertices.size()));
-  const auto all = unit_normals(normals, normals.all(), places_of(mesh), mesh.vertices.size());
+  const auto all = unit_normals(normals, normals.all(), positions_of(mesh), mesh.vertices.size());
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     CHECK(all[v].cast<double>().dot(body.closest(mesh.vertices[v]).normal) > 0.999);
 }
@@ -95,17 +95,17 @@ TEST_CASE("a group has its own vertices and no others; numbering does not matter
   const Ellipsoid<float> body({.axes = {0.03F, 0.02F, 0.02F}});
   const auto mesh = body.mesh(2000);
   const std::size_t n = mesh.vertices.size();
-  const auto places = places_of(mesh);
+  const auto positions = positions_of(mesh);
   const VertexRings rings(mesh.triangles, n);
   VertexNormals normals(rings);
   const auto everything = normals.all();
   CHECK(4 * everything.four_end < n / 2);  // both ways are taken
   CHECK(everything.four_end > 0);
-  const auto whole = unit_normals(normals, everything, places, n);
+  const auto whole = unit_normals(normals, everything, positions, n);
   for (const std::size_t count : {0u, 1u, 3u, 4u, 101u}) {
     std::vector<std::uint32_t> some;
     for (std::uint32_t v = 0; v < count; ++v) some.push_back(17 * v + 5);
-    const auto part = unit_normals(normals, normals.add(rings, some), places, n);
+    const auto part = unit_normals(normals, normals.add(rings, some), positions, n);
     for (std::uint32_t v = 0; v < n; ++v) {
       if (std::find(some.begin(), some.end(), v) != some.end())
         CHECK((part[v] - whole[v]).norm() <= ulps<float>(10));  // in a row or not: other roundings
@@ -123,7 +123,7 @@ TEST_CASE("a group has its own vertices and no others; numbering does not matter
     for (auto& v : t) v = to[v];
   }
   const auto others = unit_normals(other);
-  // Edges of 0.0015 between places of 0.03, 20 ulp each, a few of them.
+  // Edges of 0.0015 between positions of 0.03, 20 ulp each, a few of them.
   for (std::size_t i = 0; i < n; ++i) CHECK((whole[i] - others[to[i]]).norm() <= ulps<float>(200));
 }
 
@@ -134,7 +134,7 @@ TEST_CASE(
   const std::size_t n = mesh.vertices.size(), half = n / 2 + 3;
   const VertexRings rings(mesh.triangles, n);
   const VertexNormals one(rings);
-  const auto whole = unit_normals(one, one.all(), places_of(mesh), n);
+  const auto whole = unit_normals(one, one.all(), positions_of(mesh), n);
   VertexNormals normals;
   const std::array<VertexRun, 2> runs{{{0, half}, {half, n - half}}};
   std::array<VertexNormals::Group, 2> groups;
@@ -146,14 +146,14 @@ TEST_CASE(
   }
   const auto reads = normals.packed_reads(n);
   CHECK(std::count(reads.begin(), reads.end(), 0) > std::ptrdiff_t(n) / 4);
-  VertexPlaces places(runs, reads);
+  VertexPositions positions(runs, reads);
   std::vector<Vec3<float>> parts(n, Vec3<float>::Constant(nowhere));
   for (std::size_t r = 0; r < 2; ++r) {
-    put(places, mesh, runs[r].first, runs[r].count);
-    places.pack(r);
-    normals.each_in_row(groups[r], places, at_rest, into(parts));
+    put(positions, mesh, runs[r].first, runs[r].count);
+    positions.pack(r);
+    normals.each_in_row(groups[r], positions, at_rest, into(parts));
   }
-  for (std::size_t r = 0; r < 2; ++r) normals.each_apart(groups[r], places, at_rest, into(parts));
+  for (std::size_t r = 0; r < 2; ++r) normals.each_apart(groups[r], positions, at_rest, into(parts));
   for (std::size_t v = 0; v < n; ++v)
     CHECK((parts[v] - whole[v]).norm() <= ulps<float>(10));  // other roundings
 }
@@ -164,10 +164,10 @@ TEST_CASE("a vertex whose ring has collapsed has its normal at rest, its neighbo
   const std::size_t n = mesh.vertices.size();
   const VertexRings rings(mesh.triangles, n);
   const VertexNormals normals(rings);
-  const auto before = unit_normals(normals, normals.all(), places_of(mesh), n);
+  const auto before = unit_normals(normals, normals.all(), positions_of(mesh), n);
   auto collapsed = mesh;
   for (const std::uint32_t v : rings[7]) collapsed.vertices[v] = mesh.vertices[7];
-  const auto after = unit_normals(normals, normals.all(), places_of(collapsed), n);
+  const auto after = unit_normals(normals, normals.all(), positions_of(collapsed), n);
   CHECK(after[7] == Vec3<float>(0, 0, 2));
   const auto moved = rings[7];
   for (std::uint32_t v = 0; v < n; ++v) {
@@ -178,12 +178,12 @@ TEST_CASE("a vertex whose ring has collapsed has its normal at rest, its neighbo
   }
 }
 
-TEST_CASE("places are the same put in a row or anywhere") {
+TEST_CASE("positions are the same put in a row or anywhere") {
   const std::array<std::uint32_t, 8> order{5, 0, 3, 7, 6, 1, 2, 4};
   const auto x = [](std::uint32_t v) { return 0.1F * float(v); };
   const std::vector<std::uint8_t> all(7, 1);
   const std::array runs{VertexRun{0, 7}};
-  VertexPlaces row(runs, all), anywhere(runs, all);
+  VertexPositions row(runs, all), anywhere(runs, all);
   double at[3][7];
   for (std::uint32_t v = 0; v < 7; ++v)
     for (std::uint32_t axis = 0; axis < 3; ++axis) at[axis][v] = double(x(v) + float(axis));
@@ -205,12 +205,12 @@ TEST_CASE("places are the same put in a row or anywhere") {
     }
   });
   CHECK(rows == 2);
-  for (const auto* places : {&row, &anywhere})
+  for (const auto* positions : {&row, &anywhere})
     for (std::uint32_t v = 0; v < 7; ++v) {
-      CHECK(places->packed()[v].x == x(v));
-      CHECK(places->packed()[v].y == x(v) + 1);
-      CHECK(places->packed()[v].z == x(v) + 2);
-      for (std::uint32_t axis = 0; axis < 3; ++axis) CHECK(places->axis(axis)[v] == x(v) + float(axis));
+      CHECK(positions->packed()[v].x == x(v));
+      CHECK(positions->packed()[v].y == x(v) + 1);
+      CHECK(positions->packed()[v].z == x(v) + 2);
+      for (std::uint32_t axis = 0; axis < 3; ++axis) CHECK(positions->axis(axis)[v] == x(v) + float(axis));
     }
 }
 

@@ -39,9 +39,9 @@ TEST_CASE_TEMPLATE(
   const auto coordinate = [](std::uint32_t v, std::size_t k) { return static_cast<float>(10 * v + k); };
   for (const std::size_t stride : {3 * sizeof(T), 3 * sizeof(T) + sizeof(float)}) {
     const std::vector<std::uint32_t> order = shuffled_runs(count, random);
-    std::array<std::vector<float>, 3> place;
+    std::array<std::vector<float>, 3> position;
     for (const std::uint32_t v : order)
-      for (std::size_t k = 0; k < 3; ++k) place[k].push_back(coordinate(v, k));
+      for (std::size_t k = 0; k < 3; ++k) position[k].push_back(coordinate(v, k));
     const auto vertex = [&order](std::size_t i) { return order[i]; };
 
     for (const int way : {1, 2, 3}) {  // by fours in a row or not, by fours, row by row
@@ -49,8 +49,8 @@ TEST_CASE_TEMPLATE(
       std::vector<unsigned char> bytes(count * stride + 16, untouched);
       const detail::VertexWriter<T> to(reinterpret_cast<T*>(bytes.data()), stride);
       for (std::size_t i = 0; i < count; i += 4) {
-        const auto part = [&place, i](std::size_t k) {
-          return detail::load_vector<detail::Float4>(&place[k][i]);
+        const auto part = [&position, i](std::size_t k) {
+          return detail::load_vector<detail::Float4>(&position[k][i]);
         };
         const auto four = [&](std::size_t k) { return vertex(i + k); };
         const auto in_order = [&](std::size_t k) {
@@ -84,7 +84,7 @@ TEST_CASE_TEMPLATE(
   std::mt19937_64 random(11);
   INFO("seed 11");
   std::vector<std::uint32_t>
-      order;  // runs of up to 40, so that whole registers are met at every place in them
+      order;  // runs of up to 40, so that whole registers are met at every position in them
   std::uint32_t end = 0;
   while (order.size() < 2000) {
     end += 1 + static_cast<std::uint32_t>(random() % 3);
@@ -96,9 +96,9 @@ TEST_CASE_TEMPLATE(
   std::vector<std::uint8_t> part = whole;
   for (std::uint8_t& length : part) length = static_cast<std::uint8_t>(1 + random() % length);
   const auto coordinate = [](std::uint32_t v, std::size_t k) { return static_cast<float>(10 * v + k); };
-  std::array<std::vector<float>, 3> place;
+  std::array<std::vector<float>, 3> position;
   for (const std::uint32_t v : order)
-    for (std::size_t k = 0; k < 3; ++k) place[k].push_back(coordinate(v, k));
+    for (std::size_t k = 0; k < 3; ++k) position[k].push_back(coordinate(v, k));
   for (const std::size_t stride : {3 * sizeof(T), 3 * sizeof(T) + sizeof(float)}) {
     constexpr unsigned char untouched = 0xa5;
     std::vector<unsigned char> expected(end * stride, untouched);
@@ -109,8 +109,8 @@ TEST_CASE_TEMPLATE(
     for (const auto& runs : {whole, part}) {
       std::vector<unsigned char> bytes(end * stride, untouched);
       detail::VertexWriter<T>(reinterpret_cast<T*>(bytes.data()), stride)
-          .put_runs(order.size(), order.data(), runs.data(), place[0].data(), place[1].data(),
-                    place[2].data());
+          .put_runs(order.size(), order.data(), runs.data(), position[0].data(), position[1].data(),
+                    position[2].data());
       CHECK(bytes == expected);
     }
   }

@@ -26,13 +26,13 @@ struct Scene {
 
   explicit Scene(std::size_t vertices)
       : mesh(display().mesh(vertices)),
-        model(RegionSkeletons<Beams>(
-                  Beams(places(), EulerBernoulli<double>(IsotropicElasticity<double>({.E = 1e5, .nu = 0.5})),
-                        VolumePreserving<double>({.volume = body.volume()}))),
+        model(RegionSkeletons<Beams>(Beams(
+                  positions(), EulerBernoulli<double>(IsotropicElasticity<double>({.E = 1e5, .nu = 0.5})),
+                  VolumePreserving<double>({.volume = body.volume()}))),
               I<D>(make_partition(display(), mesh)), AreaNeighbourhood<D>({}), mesh, {.fixed = bottom}) {}
 
   static Ellipsoid<D> display() { return Ellipsoid<D>({.axes = {D(0.03), D(0.02), D(0.02)}}); }
-  static std::vector<Vec3<double>> places() {
+  static std::vector<Vec3<double>> positions() {
     std::vector<Vec3<double>> result;
     for (const auto& point : extremal_points(display()))
       result.push_back(point.position.template cast<double>());
@@ -40,13 +40,13 @@ struct Scene {
   }
 };
 
-ContactState<double> pressed(const Vec3<double>& place, double depth, double force) {
-  const Vec3<double> n = body.closest(place).normal;
+ContactState<double> pressed(const Vec3<double>& position, double depth, double force) {
+  const Vec3<double> n = body.closest(position).normal;
   ContactState<double> c{};
   c.points = 1;
   c.normal = n;
   c.displacement = -depth * n;
-  c.centre = place + c.displacement;
+  c.centre = position + c.displacement;
   c.force = force * n;
   c.normal_force = force;
   return c;
@@ -121,19 +121,19 @@ TEST_CASE("display in float beside a scene in double; more contacts than the ske
 
 TEST_CASE("set-up refuses a skeleton over other points") {
   using S = Scene<LinearInterpolation, double>;
-  auto places = S::places();
-  std::swap(places[0], places[1]);
+  auto positions = S::positions();
+  std::swap(positions[0], positions[1]);
   const auto mesh = body.mesh(100);
   const auto make = [&] {
     return S::Model(RegionSkeletons<S::Beams>(S::Beams(
-                        places, EulerBernoulli<double>(IsotropicElasticity<double>({.E = 1e5, .nu = 0.5})),
+                        positions, EulerBernoulli<double>(IsotropicElasticity<double>({.E = 1e5, .nu = 0.5})),
                         VolumePreserving<double>({.volume = body.volume()}))),
                     LinearInterpolation<double>(make_partition(body, mesh)), AreaNeighbourhood<double>({}),
                     mesh, {.fixed = bottom});
   };
   CHECK_THROWS_WITH(
       make(),
-      "BeamSkeletonDeformation: skeleton and partition must have the same place, at extremal point 0");
-  places.pop_back();
+      "BeamSkeletonDeformation: skeleton and partition must have the same position, at extremal point 0");
+  positions.pop_back();
   CHECK_THROWS_AS(make(), SetupError);
 }

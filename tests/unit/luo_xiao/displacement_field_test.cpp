@@ -18,8 +18,8 @@ namespace {
 const Box<double> box({.half = {0.02, 0.02, 0.02}});
 const Ellipsoid<double> ellipsoid({.axes = {0.03, 0.02, 0.02}});
 
-ContactDisplacement<double> pressed(const Vec3<double>& place, double depth) {
-  return {.place = place, .normal = Vec3<double>::UnitY(), .displacement = Vec3<double>(0, -depth, 0)};
+ContactDisplacement<double> pressed(const Vec3<double>& position, double depth) {
+  return {.position = position, .normal = Vec3<double>::UnitY(), .displacement = Vec3<double>(0, -depth, 0)};
 }
 
 template <class I, class N = NoNeighbourhood<double>, class Body>
@@ -91,9 +91,10 @@ TEST_CASE(
   auto field = make_field<LinearInterpolation<double>>(box, mesh);
   const auto& part = field.partition();
   Buffer<double> out(mesh.vertices.size(), 7.0);
-  const Vec3<double> place(0.002, 0.02, 0.001);
-  const auto moved = field.write(Contacts{pressed(place, 1e-3)}, Corners(8, Vec3<double>::Zero()), out.view);
-  const auto& face = part.faces()[part.locate(place).face];
+  const Vec3<double> position(0.002, 0.02, 0.001);
+  const auto moved =
+      field.write(Contacts{pressed(position, 1e-3)}, Corners(8, Vec3<double>::Zero()), out.view);
+  const auto& face = part.faces()[part.locate(position).face];
   CHECK(moved.vertices == face.count);
   Vec3<double> low = Vec3<double>::Constant(1), high = -low;
   std::size_t normals = 0;
@@ -151,12 +152,12 @@ TEST_CASE("normals are area-weighted over the displaced triangles") {
         (out.position(t[1]) - out.position(t[0])).cross(out.position(t[2]) - out.position(t[0]));
     for (const std::uint32_t v : t) sum[v] += area;
   }
-  // Worked out in float, edges of 3 mm between places of 30 mm: 10 ulp, times a few.
+  // Worked out in float, edges of 3 mm between positions of 30 mm: 10 ulp, times a few.
   for (std::size_t i = 0; i < sum.size(); ++i)
     CHECK((out.normal(i) - sum[i].normalized()).norm() <= ulps<float>(40));
 }
 
-TEST_CASE("strides and float buffers: the same numbers at their places, nothing between them touched") {
+TEST_CASE("strides and float buffers: the same numbers at their positions, nothing between them touched") {
   const auto mesh = ellipsoid.mesh(200);
   const std::size_t n = mesh.vertices.size();
   const Contacts contacts{pressed({0.003, 0.0199, 0.002}, 3e-3)};
@@ -237,7 +238,7 @@ TEST_CASE("input that is not finite or absurd: that contact is not drawn, and no
       Contacts contacts{pressed({0, 0.02, 0}, 1e-3)};
       Corners corners(6, Vec3<double>(1e-4, 0, 0));
       contacts[0].area = 1e-5;
-      if (entry == 0) contacts[0].place.x() = bad;
+      if (entry == 0) contacts[0].position.x() = bad;
       if (entry == 1) contacts[0].displacement.y() = bad;
       if (entry == 2) contacts[0].area = bad;
       if (entry == 3) contacts[0].normal.z() = bad;
@@ -307,7 +308,7 @@ TEST_CASE_TEMPLATE("no heap in a tick", I, LinearInterpolation<double>, PhongInt
   contacts[0].area = 1e-5;
   const test::HeapCount heap;
   for (int tick = 0; tick < 20; ++tick) {
-    contacts[0].place.z() = 1e-3 * tick;
+    contacts[0].position.z() = 1e-3 * tick;
     field.write(contacts, corners, out.view);
   }
   CHECK(heap.allocations() == 0);

@@ -3,7 +3,7 @@
 #include <palpate/geometry/extremal_points.hpp>
 #include <palpate/law/force/duffing.hpp>
 #include <palpate/law/friction/coulomb.hpp>
-#include <palpate/luo_xiao/beam/regions.hpp>
+#include <palpate/luo_xiao/beam/region_skeletons.hpp>
 #include <palpate/solver/contact_solver.hpp>
 
 #include <doctest/doctest.h>

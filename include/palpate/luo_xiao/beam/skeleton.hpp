@@ -7,7 +7,7 @@
 #include <palpate/core/fixed_vector.hpp>
 #include <palpate/luo_xiao/beam/concept.hpp>
 #include <palpate/luo_xiao/beam/euler_bernoulli.hpp>
-#include <palpate/luo_xiao/beam/sharing.hpp>
+#include <palpate/luo_xiao/beam/load_sharing.hpp>
 #include <palpate/luo_xiao/beam/volume_preserving.hpp>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace palpate {
 /// What a skeleton needs of a contact. Object coordinates.
 template <Real S>
 struct SkeletonContact {
-  Vec3<S> place = Vec3<S>::Zero();         ///< on the undeformed surface [m]
+  Vec3<S> position = Vec3<S>::Zero();      ///< on the undeformed surface [m]
   Vec3<S> force = Vec3<S>::Zero();         ///< F on the elastic object: minus the force on the tool [N]
   Vec3<S> displacement = Vec3<S>::Zero();  ///< D [m]
   S normal_force = 0;                      ///< F_cn >= 0 [N]: how far the contact counts among several
@@ -68,11 +68,11 @@ class Skeleton {
   using Beams = FixedVector<SkeletonBeam, N, Spare::undefined>;
 
   /// Lengths below this part of the longest are held at it: such a beam takes the whole load to rounding.
-  static constexpr double least_length = 1e-15;
+  static constexpr double min_length = 1e-15;
   /// kt is held at this times ka, reached by Euler-Bernoulli at l = r/1155 (with shear it never is): both
   /// still grow without bound as l -> 0, but their ratio does not, and no digits are lost.
-  static constexpr double most_ratio = 1e6;
-  static constexpr double most_coordinate = 1e6;  ///< [m]: a contact further out is bad input
+  static constexpr double max_ratio = 1e6;
+  static constexpr double max_coordinate = 1e6;  ///< [m]: a contact further out is bad input
 
   /// `extremal_points` [m], in object coordinates.
   Skeleton(std::span<const Vec3<S>> extremal_points, const T& theory, const R& rule)
@@ -82,7 +82,7 @@ class Skeleton {
       fail("Skeleton", "more extremal points than its capacity", static_cast<double>(extremal_points.size()));
     }
     for (std::size_t i = 0; i < extremal_points.size(); ++i) {
-      if (!is_place(extremal_points[i])) {
+      if (!is_usable_position(extremal_points[i])) {
         fail_at("Skeleton", "coordinates must be finite and below 1e6 m", "extremal point", i);
       }
       points_.push_back(extremal_points[i]);
@@ -108,18 +108,19 @@ class Skeleton {
   [[nodiscard]] Section section(const Load& load) const noexcept { return rule_.section(load.total_length); }
 
   [[nodiscard]] static bool is_usable(const SkeletonContact<S>& contact) noexcept {
-    return is_place(contact.place) && is_finite(contact.force);
+    return is_usable_position(contact.position) && is_finite(contact.force);
   }
 
-  /// Beams of a contact with their stiffnesses and no force; a contact of no usable place stands at the
+  /// Beams of a contact with their stiffnesses and no force; a contact of no usable position stands at the
   /// origin. For those who build a system of their own, as `RegionSkeletons` does.
   void begin(const SkeletonContact<S>& contact, Beams& beams, Load& load) const noexcept {
-    const Vec3<double> place =
-        is_place(contact.place) ? Vec3<double>(contact.place.template cast<double>()) : Vec3<double>::Zero();
+    const Vec3<double> position = is_usable_position(contact.position)
+                                      ? Vec3<double>(contact.position.template cast<double>())
+                                      : Vec3<double>::Zero();
     double sum = 0, longest = 0;
     beams.clear();
     for (const Vec3<S>& point : points_) {
-      const Vec3<double> axis = place - point.template cast<double>();
+      const Vec3<double> axis = position - point.template cast<double>();
       const double length = axis.norm();  // coordinates are below 1e6 m
       sum += length;
       longest = (std::max)(longest, length);
@@ -127,7 +128,7 @@ class Skeleton {
     }
     load.total_length = sum;
     const Section section = rule_.section(sum);
-    const double floor = longest > 0 ? least_length * longest : 1.0;  // all lengths 0: all alike
+    const double floor = longest > 0 ? min_length * longest : 1.0;  // all lengths 0: all alike
     for (SkeletonBeam& beam : beams) {
       if (beam.length >= floor) {
         beam.axis /= beam.length;
@@ -137,7 +138,7 @@ class Skeleton {
       }
       beam.axial = theory_.axial_stiffness(section, beam.length);
       beam.transverse =
-          (std::min)(theory_.transverse_stiffness(section, beam.length), most_ratio * beam.axial);
+          (std::min)(theory_.transverse_stiffness(section, beam.length), max_ratio * beam.axial);
     }
   }
 
@@ -158,8 +159,8 @@ class Skeleton {
   }
 
  private:
-  [[nodiscard]] static bool is_place(const Vec3<S>& x) noexcept {
-    return is_finite(x) && x.cwiseAbs().maxCoeff() <= S(most_coordinate);
+  [[nodiscard]] static bool is_usable_position(const Vec3<S>& x) noexcept {
+    return is_finite(x) && x.cwiseAbs().maxCoeff() <= S(max_coordinate);
   }
 
   FixedVector<Vec3<S>, N> points_;

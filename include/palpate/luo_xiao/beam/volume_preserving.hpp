@@ -36,8 +36,8 @@ class VolumePreserving {
 
   explicit VolumePreserving(const Params& params) : p_(params) {
     require_positive(params.volume, "VolumePreserving", "volume [m^3] must be > 0");
-    least_length_ = std::cbrt(params.volume);
-    require_positive(radius(most_length), "VolumePreserving", "volume [m^3] is too small: radius [m]");
+    min_length_ = std::cbrt(params.volume);
+    require_positive(radius(max_length), "VolumePreserving", "volume [m^3] is too small: radius [m]");
   }
 
   /// `total_length` = sum l_i [m].
@@ -47,15 +47,15 @@ class VolumePreserving {
   [[nodiscard]] constexpr const Params& params() const noexcept { return p_; }
 
  private:
-  static constexpr S most_length = S(1e9);
+  static constexpr S max_length = S(1e9);
 
   [[nodiscard]] S radius(S total_length) const noexcept {
-    const S sum = (std::min)((std::max)(least_length_, total_length), (std::max)(least_length_, most_length));
+    const S sum = (std::min)((std::max)(min_length_, total_length), (std::max)(min_length_, max_length));
     return std::sqrt(p_.volume / (std::numbers::pi_v<S> * sum));
   }
 
   Params p_;
-  S least_length_;
+  S min_length_;
 };
 
 /// The same given section for every beam.

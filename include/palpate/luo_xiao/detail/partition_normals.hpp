@@ -23,8 +23,8 @@ namespace palpate {
 /// partition's own normal. A face that moves changes the normals of its vertices and of their neighbours in
 /// other faces.
 ///
-/// Put a face's vertices where `places_from` says, or `place` them, and say `placed`; then `write_in_row`
-/// those that need no other face's, while its places are in the first cache; `write_apart` the others when
+/// Put a face's vertices where `positions_from` says, or `position` them, and say `placed`; then `write_in_row`
+/// those that need no other face's, while its positions are in the first cache; `write_apart` the others when
 /// all faces that move are there.
 template <Real S>
 class PartitionNormals {
@@ -73,34 +73,34 @@ class PartitionNormals {
       }
     }
     rim_start_.push_back(rim_.size());
-    places_ = VertexPlaces(runs, normals_.packed_reads(order.size()));
+    positions_ = VertexPositions(runs, normals_.packed_reads(order.size()));
     for (std::size_t f = 0; f < faces.size(); ++f) {
-      place(0, faces[f].count, partition.rest_from(faces[f], 0));
-      placed(f);
+      set_positions(0, faces[f].count, partition.rest_from(faces[f], 0));
+      finish_face(f);
     }
   }
 
   /// Where the vertices of the face to come are put, from its slot number `from` on, in whole groups of
   /// registers [m].
-  [[nodiscard]] PALPATE_INLINE Lists<float> places_from(std::size_t from) noexcept {
-    return {places_.axis(0) + from, places_.axis(1) + from, places_.axis(2) + from};
+  [[nodiscard]] PALPATE_INLINE Lists<float> positions_from(std::size_t from) noexcept {
+    return {positions_.axis(0) + from, positions_.axis(1) + from, positions_.axis(2) + from};
   }
   /// Where `count` of its vertices are now, from its slot number `from` on [m], if they are not put there
   /// already.
-  PALPATE_INLINE void place(std::size_t from, std::size_t count, const Lists<const S>& at) noexcept {
+  PALPATE_INLINE void set_positions(std::size_t from, std::size_t count, const Lists<const S>& at) noexcept {
     if constexpr (std::same_as<S, float>) {
-      if (at[0] == places_.axis(0) + from) return;
+      if (at[0] == positions_.axis(0) + from) return;
     }
-    places_.set_row(from, count, at[0], at[1], at[2]);
+    positions_.set_row(from, count, at[0], at[1], at[2]);
   }
   /// It was face f, and all of its vertices are there.
-  void placed(std::size_t f) noexcept { places_.pack(f); }
+  void finish_face(std::size_t f) noexcept { positions_.pack(f); }
 
   /// Of face f's vertices those that need no other face's, right after its vertices have been placed.
   template <Real T>
   PALPATE_FLATTEN void write_in_row(const FacePartition<S>& partition, std::size_t f,
                                     const VertexBuffer<T>& out) const noexcept {
-    normals_.each_in_row(inside_[f], places_, at_rest(partition, f), writer(partition, out));
+    normals_.each_in_row(inside_[f], positions_, at_rest(partition, f), writer(partition, out));
   }
   /// Of the faces that moved, moved[f] != 0, the others, and their neighbours in faces that did not.
   template <Real T>
@@ -108,10 +108,10 @@ class PartitionNormals {
                                    const VertexBuffer<T>& out) const noexcept {
     for (std::size_t f = 0; f < moved.size(); ++f) {
       if (!moved[f]) continue;
-      normals_.each_apart(inside_[f], places_, at_rest(partition, f), writer(partition, out));
+      normals_.each_apart(inside_[f], positions_, at_rest(partition, f), writer(partition, out));
       for (std::size_t k = rim_start_[f]; k < rim_start_[f + 1]; ++k)
         if (!moved[rim_[k].face])
-          normals_.each_apart(rim_[k].vertices, places_, at_rest(partition, rim_[k].face),
+          normals_.each_apart(rim_[k].vertices, positions_, at_rest(partition, rim_[k].face),
                               writer(partition, out));
     }
   }
@@ -142,7 +142,7 @@ class PartitionNormals {
   std::vector<VertexNormals::Group> inside_;  // by face
   std::vector<Rim> rim_;
   std::vector<std::size_t> rim_start_;
-  VertexPlaces places_;  // of one face's slots after the other's, and packed
+  VertexPositions positions_;  // of one face's slots after the other's, and packed
 };
 
 }  // namespace palpate

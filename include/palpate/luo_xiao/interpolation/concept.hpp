@@ -28,7 +28,7 @@ namespace palpate {
 /// An equivalent contact as the shape sees it. Object coordinates.
 template <Real S>
 struct ContactDisplacement {
-  Vec3<S> place = Vec3<S>::Zero();         ///< p_0 on the undeformed surface [m]
+  Vec3<S> position = Vec3<S>::Zero();      ///< p_0 on the undeformed surface [m]
   Vec3<S> normal = Vec3<S>::UnitY();       ///< of the undeformed surface there: outward, unit
   Vec3<S> displacement = Vec3<S>::Zero();  ///< D [m]
   S area = 0;                              ///< of the region [m^2]; 0 for a single point
@@ -45,7 +45,7 @@ template <Real S>
 }
 template <Real S>
 [[nodiscard]] inline bool is_drawable(const ContactDisplacement<S>& c) noexcept {
-  return is_drawable(c.place) && is_finite(c.normal) && is_drawable(c.displacement) && is_finite(c.area) &&
+  return is_drawable(c.position) && is_finite(c.normal) && is_drawable(c.displacement) && is_finite(c.area) &&
          is_finite(c.points);
 }
 
@@ -87,7 +87,7 @@ concept HasAdd = requires(const I& field, const typename I::Load& load, std::siz
   { field.add(load, face, from, count, scale, start, to) } noexcept;
 };
 
-/// Continuous over the surface and in its inputs; D at the contact's place and u_i at the corners; zero
+/// Continuous over the surface and in its inputs; D at the contact's position and u_i at the corners; zero
 /// corners and zero D give exactly zero; turning all vectors turns the field.
 template <class I>
 concept Interpolation = Real<typename I::Scalar> && HasLoad<I> && HasPartition<I> && HasPrepare<I> &&

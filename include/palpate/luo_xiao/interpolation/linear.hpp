@@ -46,7 +46,7 @@ class LinearInterpolation {
       if (!is_drawable(corners[i])) return;
       load.corner[i] = corners[i];
     }
-    load.at = partition_.locate(contact.place);
+    load.at = partition_.locate(contact.position);
     load.contact = contact.displacement;
     load.active = load.at.valid;
   }

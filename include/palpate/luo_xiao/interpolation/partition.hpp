@@ -53,7 +53,7 @@ template <Real S>
 struct FaceSplit {
   std::size_t corners = 0;
   S share = 0;                              ///< largest weight of the contact in the face; 0: not split
-  std::array<S, max_face_corners> P{};      ///< weight of the contact's place
+  std::array<S, max_face_corners> P{};      ///< weight of the contact's position
   std::array<S, max_face_corners> per_P{};  ///< 1 / max(P, h)
   std::array<S, max_face_corners> lift{};   ///< max(0, h - P) / max(P, h)
 };
@@ -138,11 +138,11 @@ class FacePartition {
   [[nodiscard]] std::size_t list_length() const noexcept { return faces_.back().row + faces_.back().length; }
   [[nodiscard]] const Params& params() const noexcept { return p_; }
 
-  /// Face and weights of the surface point in the direction of `place` from the centre.
-  [[nodiscard]] PointWeights<S> locate(const Vec3<S>& place) const noexcept {
+  /// Face and weights of the surface point in the direction of `position` from the centre.
+  [[nodiscard]] PointWeights<S> locate(const Vec3<S>& position) const noexcept {
     PointWeights<S> at;
-    if (!is_finite(place)) return at;
-    const Vec3<double> ray = place.template cast<double>() - centre_;
+    if (!is_finite(position)) return at;
+    const Vec3<double> ray = position.template cast<double>() - centre_;
     const double length = stable_norm(ray);
     if (!(length > 0)) return at;
     const Vec3<double> direction = ray / length;
@@ -197,7 +197,7 @@ class FacePartition {
       fail(name, "takes at most 64 extremal points", count(points_.size()));
     for (std::size_t i = 0; i < points_.size(); ++i) {
       if (!is_finite(points_[i].position) || !is_finite(points_[i].normal))
-        fail_at(name, "place and normal must be finite", "extremal point", i);
+        fail_at(name, "position and normal must be finite", "extremal point", i);
     }
     if (!palpate::is_finite(Vec3<double>(centre_))) fail(name, "centre must be finite");
     if (!(p_.fade > S(0) && p_.fade < S(0.125)))
@@ -207,7 +207,7 @@ class FacePartition {
       fail(name, "one normal per mesh vertex is needed", static_cast<double>(normals.size()));
     for (std::size_t i = 0; i < normals.size(); ++i) {
       if (!is_finite(mesh.vertices[i]) || !is_finite(normals[i]))
-        fail_at(name, "place and normal must be finite", "mesh vertex", i);
+        fail_at(name, "position and normal must be finite", "mesh vertex", i);
     }
   }
 
@@ -221,7 +221,7 @@ class FacePartition {
     double size = 0;
     for (const Vec3<double>& r : ray) size = (std::max)(size, r.norm());
     for (Vec3<double>& r : ray) r /= size;
-    // Places given in S are rounded, so what is flat is flat to a few units in its last place only.
+    // Positions given in S are rounded, so what is flat is flat to a few units in the last place only.
     const double flat = (std::max)(1e-9, 64.0 * static_cast<double>(std::numeric_limits<S>::epsilon()));
     for (const detail::Polygon& facet : detail::hull_facets(direction, flat, name)) {
       const Vec3<double> normal =

@@ -68,7 +68,7 @@ class PhongInterpolation {
       if (!is_drawable(u)) return;
       largest = (std::max)(largest, stable_norm(u));
     }
-    load.at = partition_.locate(contact.place);
+    load.at = partition_.locate(contact.position);
     if (!load.at.valid || !is_finite(largest) || !(largest > S(16) * (std::numeric_limits<S>::min)())) return;
     for (std::size_t i = 0; i < corners.size(); ++i)
       load.corner[i] = terms_of(corners[i], points[i].normal, largest);
@@ -131,7 +131,7 @@ class PhongInterpolation {
  private:
   using V = detail::LaneGroup<S>;
   static constexpr std::size_t magnitude = 0, lent = 1, angle = 2, tangent = 3,
-                               linear = 6;  // places in Corner
+                               linear = 6;  // positions in Corner
   using Sums = std::array<Block<S>, linear>;
 
   // Sums of g and g theta become 1 / g and cos theta.

@@ -31,7 +31,7 @@ class SmoothInterpolation {
 
   struct Load {
     bool active = false;
-    Vec3<S> place = Vec3<S>::Zero();                  // reduced
+    Vec3<S> position = Vec3<S>::Zero();               // reduced
     std::array<Vec3<S>, max_extremal_points> kernel;  // read for active loads only
     Vec3<S> moving = Vec3<S>::Zero();
     std::array<Vec3<S>, 4> affine{};
@@ -42,7 +42,7 @@ class SmoothInterpolation {
   };
 
   explicit SmoothInterpolation(FacePartition<S> partition)
-      : partition_(std::move(partition)), spline_(places(partition_)) {
+      : partition_(std::move(partition)), spline_(positions(partition_)) {
     const std::size_t n = partition_.list_length();
     kernels_.resize(spline_.size() * n);
     for (AlignedList<S>& list : reduced_) list.resize(n);
@@ -71,14 +71,14 @@ class SmoothInterpolation {
       still = still && u.isZero(S(0));
     }
     if (still) return;
-    const Vec3<double> p = spline_.reduced(contact.place.template cast<double>());
+    const Vec3<double> p = spline_.reduced(contact.position.template cast<double>());
     // Beyond this the cubes would swamp the field; a contact is on the surface, so it is never far.
     if (!palpate::is_finite(p) || !(p.squaredNorm() < 100)) return;
     std::array<double, max_extremal_points> cardinal, values;
     TriharmonicSpline::Function own, part;
     spline_.cardinals(p, cardinal.data());
     spline_.moving(p, cardinal.data(), own);
-    load.place = p.template cast<S>();
+    load.position = p.template cast<S>();
     load.contact = contact.displacement;
     load.own_moving = static_cast<S>(own.moving);
     for (std::size_t j = 0; j < spline_.size(); ++j) load.own[j] = static_cast<S>(own.kernel[j]);
@@ -106,7 +106,7 @@ class SmoothInterpolation {
     for (std::size_t j = 0; j < spline_.size(); ++j) {
       if (a.kernel[j] != b.kernel[j]) return false;
     }
-    return a.place == b.place && a.moving == b.moving && a.affine == b.affine && a.contact == b.contact;
+    return a.position == b.position && a.moving == b.moving && a.affine == b.affine && a.contact == b.contact;
   }
 
   PALPATE_FLATTEN void add(const Load& load, std::size_t face, std::size_t from, std::size_t count,
@@ -157,7 +157,7 @@ class SmoothInterpolation {
                                V (&u)[N]) const noexcept {
     using detail::unrolled;
     const V vx(&reduced_[0][at]), vy(&reduced_[1][at]), vz(&reduced_[2][at]);
-    const V dx = vx - load.place.x(), dy = vy - load.place.y(), dz = vz - load.place.z(),
+    const V dx = vx - load.position.x(), dy = vy - load.position.y(), dz = vz - load.position.z(),
             square = dx * dx + dy * dy + dz * dz, moving = square * square * inverse_root(square);
     unrolled<N>([&](std::size_t k) PALPATE_INLINE_LAMBDA {
       u[k] = V(terms.affine[0][k]) + vx * terms.affine[1][k] + vy * terms.affine[2][k] +
@@ -170,7 +170,7 @@ class SmoothInterpolation {
     }
   }
 
-  static std::vector<Vec3<double>> places(const FacePartition<S>& partition) {
+  static std::vector<Vec3<double>> positions(const FacePartition<S>& partition) {
     std::vector<Vec3<double>> sites;
     for (const ExtremalPoint<S>& point : partition.points())
       sites.push_back(point.position.template cast<double>());

@@ -52,27 +52,27 @@ inline MatL beam_stiffness(const VecL& e, const VecL& p, L E, L S, L kappa_G = 0
 
 /// All contacts' displacements; `share` is a_jk, `coupled` adds the blocks between contacts.
 struct ReferenceRegions {
-  std::vector<VecL> points, places, forces;
+  std::vector<VecL> points, positions, forces;
   std::vector<std::vector<L>> share;
   L E, volume;
   bool coupled = true;
 
   [[nodiscard]] L area(std::size_t j) const {
     L sum = 0;
-    for (const VecL& e : points) sum += (places[j] - e).norm();
+    for (const VecL& e : points) sum += (positions[j] - e).norm();
     return volume / sum;
   }
   [[nodiscard]] MatL own(std::size_t j, std::size_t i) const {
-    return beam_stiffness(points[i], places[j], E, area(j));
+    return beam_stiffness(points[i], positions[j], E, area(j));
   }
   // Of contact j's skeleton to contact k: shared, mean section when coupled, j's own when not.
   [[nodiscard]] MatL between(std::size_t j, std::size_t k) const {
-    const MatL a = beam_stiffness(places[k], places[j], E, area(j)),
-               b = beam_stiffness(places[k], places[j], E, area(k));
+    const MatL a = beam_stiffness(positions[k], positions[j], E, area(j)),
+               b = beam_stiffness(positions[k], positions[j], E, area(k));
     return share[j][k] * (coupled ? MatL((a + b) / 2) : a);
   }
   [[nodiscard]] std::vector<VecL> displacements() const {
-    const std::size_t m = places.size();
+    const std::size_t m = positions.size();
     std::vector<std::vector<L>> a(3 * m, std::vector<L>(3 * m, 0));
     std::vector<L> b(3 * m);
     const auto add = [&](std::size_t j, std::size_t k, const MatL& block) {

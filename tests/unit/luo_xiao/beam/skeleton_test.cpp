@@ -32,10 +32,10 @@ Skeleton<S> make(const std::vector<Vec3<S>>& points, double v = volume) {
 }
 
 template <class K>
-typename K::Load share(const K& skeleton, const Vec3<typename K::Scalar>& place,
+typename K::Load share(const K& skeleton, const Vec3<typename K::Scalar>& position,
                        const Vec3<typename K::Scalar>& F) {
   typename K::Load load;
-  skeleton.share({.place = place, .force = F}, load);
+  skeleton.share({.position = position, .force = F}, load);
   return load;
 }
 
@@ -48,9 +48,9 @@ std::vector<Vec3<S>> random_points(std::mt19937_64& random, std::size_t n) {
 
 // Largest error of the forces against the long double reference, over |F|.
 template <Real S>
-L error_of(const typename Skeleton<S>::Load& load, const std::vector<Vec3<S>>& points, const Vec3<S>& place,
-           const Vec3<S>& F, double v = volume) {
-  test::ReferenceRegions exact{{}, {place.template cast<L>()}, {F.template cast<L>()}, {{0}}, E, v};
+L error_of(const typename Skeleton<S>::Load& load, const std::vector<Vec3<S>>& points,
+           const Vec3<S>& position, const Vec3<S>& F, double v = volume) {
+  test::ReferenceRegions exact{{}, {position.template cast<L>()}, {F.template cast<L>()}, {{0}}, E, v};
   for (const Vec3<S>& p : points) exact.points.push_back(p.template cast<L>());
   const VecL d = exact.displacements()[0];
   L worst = 0;
@@ -69,10 +69,10 @@ TEST_CASE_TEMPLATE("random skeletons of 1 to 64 beams: forces are the reference'
   for (int round = 0; round < 300; ++round) {
     const auto n = static_cast<std::size_t>(1 + (round % 64));
     const auto points = random_points<S>(random, n);
-    const Vec3<S> place = test::random_vector<S>(random, 0.03), F = test::random_vector<S>(random, 1);
-    const auto load = share(make<S>(points), place, F);
+    const Vec3<S> position = test::random_vector<S>(random, 0.03), F = test::random_vector<S>(random, 1);
+    const auto load = share(make<S>(points), position, F);
     REQUIRE(load.shared);
-    worst = std::max(worst, error_of<S>(load, points, place, F));
+    worst = std::max(worst, error_of<S>(load, points, position, F));
     VecL sum = VecL::Zero();
     L size = 0;
     for (const auto& beam : load.beams) {
@@ -91,14 +91,14 @@ TEST_CASE_TEMPLATE("random skeletons of 1 to 64 beams: forces are the reference'
 TEST_CASE("ratios (6), (7) hold: each force's parts are d's over l and l^3, in space") {
   std::mt19937_64 random(seed + 1);
   const auto points = random_points<double>(random, 9);
-  const Vec3<double> place(0.01, 0.02, -0.01);
-  const auto load = share(make(points), place, Vec3<double>(0.3, -1, 0.2));
+  const Vec3<double> position(0.01, 0.02, -0.01);
+  const auto load = share(make(points), position, Vec3<double>(0.3, -1, 0.2));
   const Vec3<double> d = load.displacement;
   L first_x = 0, first_y = 0;
   for (std::size_t i = 0; i < 9; ++i) {
-    const VecL e = points[i].cast<L>(), x = (place.cast<L>() - e).normalized(),
+    const VecL e = points[i].cast<L>(), x = (position.cast<L>() - e).normalized(),
                f = load.beams[i].force.cast<L>();
-    const L l = (place.cast<L>() - e).norm();
+    const L l = (position.cast<L>() - e).norm();
     const VecL dx = x * x.dot(d.cast<L>()), dy = d.cast<L>() - dx;
     const L ratio_x = f.dot(x) / (x.dot(d.cast<L>()) / l),
             ratio_y = (f - x * x.dot(f)).norm() / (dy.norm() / (l * l * l));
@@ -114,9 +114,9 @@ TEST_CASE("turning, reordering, scaling, doubling: what the skeleton must not de
   std::mt19937_64 random(seed + 2);
   for (int round = 0; round < 40; ++round) {
     const auto points = random_points<double>(random, 8);
-    const Vec3<double> place = test::random_vector<double>(random, 0.03),
+    const Vec3<double> position = test::random_vector<double>(random, 0.03),
                        F = test::random_vector<double>(random, 1), G = test::random_vector<double>(random, 1);
-    const auto load = share(make(points), place, F);
+    const auto load = share(make(points), position, F);
     const double size = F.norm();
     const double tolerance = 1e-12 * size;  // two solves of cond(K) up to some hundred
 
@@ -130,11 +130,11 @@ TEST_CASE("turning, reordering, scaling, doubling: what the skeleton must not de
       reordered.push_back(points[order[i]]);
       scaled.push_back(points[i] * 8);
     }
-    const auto rotated = share(make(turned), R * place, R * F);
-    const auto shuffled = share(make(reordered), place, F);
-    const auto larger = share(make(scaled, volume * 512), Vec3<double>(place * 8), F);
-    const auto other = share(make(points), place, G);
-    const auto both = share(make(points), place, Vec3<double>(2 * F - 3 * G));
+    const auto rotated = share(make(turned), R * position, R * F);
+    const auto shuffled = share(make(reordered), position, F);
+    const auto larger = share(make(scaled, volume * 512), Vec3<double>(position * 8), F);
+    const auto other = share(make(points), position, G);
+    const auto both = share(make(points), position, Vec3<double>(2 * F - 3 * G));
     double energy = 0;
     for (std::size_t i = 0; i < 8; ++i) {
       const Vec3<double> f = load.beams[i].force;
@@ -182,9 +182,9 @@ TEST_CASE("condition: eigenvalues of K stay within (4/3)(l/r)^2") {
   std::mt19937_64 random(seed + 4);
   for (int round = 0; round < 50; ++round) {
     const auto points = random_points<double>(random, 3 + static_cast<std::size_t>(round % 6));
-    const Vec3<double> place = test::random_vector<double>(random, 0.03);
+    const Vec3<double> position = test::random_vector<double>(random, 0.03);
     const auto skeleton = make(points, 1e-7);  // slender: every ka > kt
-    const auto load = share(skeleton, place, Vec3<double>(1, 0, 0));
+    const auto load = share(skeleton, position, Vec3<double>(1, 0, 0));
     double bound = 0;
     const double r = skeleton.section(load).radius();
     for (const auto& beam : load.beams)
@@ -193,7 +193,7 @@ TEST_CASE("condition: eigenvalues of K stay within (4/3)(l/r)^2") {
     double most = 0, least = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 100; ++k) {
       const Vec3<double> F = test::random_vector<double>(random, 1).normalized();
-      const double d = share(skeleton, place, F).displacement.norm();
+      const double d = share(skeleton, position, F).displacement.norm();
       most = std::max(most, d), least = std::min(least, d);
     }
     CHECK(most / least <= bound * (1 + 1e-9));
@@ -215,8 +215,8 @@ TEST_CASE_TEMPLATE("on an extremal point one beam takes the whole load; near it 
   }
   double last = 1;
   for (double away = 1e-2; away > 1e-25; away /= 10) {
-    const Vec3<S> place = points[2] + Vec3<S>(S(away), S(-away), S(away) / 2);
-    const auto near = share(skeleton, place, F);
+    const Vec3<S> position = points[2] + Vec3<S>(S(away), S(-away), S(away) / 2);
+    const auto near = share(skeleton, position, F);
     REQUIRE(near.shared);
     const double rest = static_cast<double>((near.beams[2].force - F).norm());
     CHECK(rest <=
@@ -292,7 +292,7 @@ TEST_CASE("set-up reports; volume is preserved; a tick uses no heap and repeats 
   std::mt19937_64 random(seed + 7);
   const auto skeleton = make(random_points<double>(random, 12));
   Skeleton<double>::Load load, again;
-  const SkeletonContact<double> contact{.place = Vec3<double>(0.01, 0.02, 0),
+  const SkeletonContact<double> contact{.position = Vec3<double>(0.01, 0.02, 0),
                                         .force = Vec3<double>(0.1, -1, 0)};
   const test::HeapCount heap;
   skeleton.share(contact, load);
@@ -313,16 +313,16 @@ TEST_CASE(
   for (int i = 0; i < 8; ++i)
     points.push_back(Vec3<double>(i & 1 ? 0.03 : -0.03, i & 2 ? 0.06 : 0, i & 4 ? 0.03 : -0.03));
   const double v = 0.06 * 0.06 * 0.06, nu = 0.5;
-  const Vec3<double> place(0.01, 0.06, 0.004), F(0.2, -1, 0);
+  const Vec3<double> position(0.01, 0.06, 0.004), F(0.2, -1, 0);
   const Timoshenko<double> shear(IsotropicElasticity<double>({.E = E, .nu = nu}));
   const Skeleton<double, Timoshenko<double>> with(points, shear, VolumePreserving<double>({.volume = v}));
-  const auto a = share(with, place, F);
-  const auto b = share(make(points, v), place, F);
-  test::ReferenceRegions r{{}, {place.cast<L>()}, {F.cast<L>()}, {{0}}, E, v};
+  const auto a = share(with, position, F);
+  const auto b = share(make(points, v), position, F);
+  test::ReferenceRegions r{{}, {position.cast<L>()}, {F.cast<L>()}, {{0}}, E, v};
   for (const auto& p : points) r.points.push_back(p.cast<L>());
   const L kappa_G = 27.0L / 32 * E / 3;
   MatL k = MatL::Zero();
-  for (const VecL& e : r.points) k += test::beam_stiffness(e, place.cast<L>(), E, r.area(0), kappa_G);
+  for (const VecL& e : r.points) k += test::beam_stiffness(e, position.cast<L>(), E, r.area(0), kappa_G);
   std::vector<std::vector<L>> rows(3, std::vector<L>(3));
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) rows[i][j] = k(static_cast<int>(i), static_cast<int>(j));
@@ -331,7 +331,7 @@ TEST_CASE(
   const VecL d(x[0], x[1], x[2]);
   double change = 0;
   for (std::size_t i = 0; i < 8; ++i) {
-    const VecL exact = test::beam_stiffness(r.points[i], place.cast<L>(), E, r.area(0), kappa_G) * d;
+    const VecL exact = test::beam_stiffness(r.points[i], position.cast<L>(), E, r.area(0), kappa_G) * d;
     CHECK((a.beams[i].force.cast<L>() - exact).norm() <= 1e-13L);
     change = std::max(change, (a.beams[i].force - b.beams[i].force).norm());
   }

@@ -27,11 +27,12 @@ TEST_CASE_TEMPLATE(
   std::vector<Vec3<S>> corners;
   for (const auto& point : linear.partition().points()) corners.push_back(affine(point.position));
   // Bilinear weights of all four corners are at least 0.1; on the edge two are, and the others are 0.
-  for (const Vec3<S>& place : {Vec3<S>(S(0.003), S(0.02), S(0.001)), Vec3<S>(S(-0.002), S(-0.02), S(-0.003)),
-                               Vec3<S>(S(0.03), S(0.02), S(0.006)), Vec3<S>(S(-0.03), S(-0.02), S(-0.015))}) {
+  for (const Vec3<S>& position :
+       {Vec3<S>(S(0.003), S(0.02), S(0.001)), Vec3<S>(S(-0.002), S(-0.02), S(-0.003)),
+        Vec3<S>(S(0.03), S(0.02), S(0.006)), Vec3<S>(S(-0.03), S(-0.02), S(-0.015))}) {
     ContactDisplacement<S> contact;
-    contact.place = place;
-    contact.displacement = affine(place);
+    contact.position = position;
+    contact.displacement = affine(position);
     const auto field = field_of(linear, corners, contact);
     for (std::size_t slot = 0; slot < field.size(); ++slot) {
       const Vec3<S> exact = affine(mesh.vertices[linear.partition().order()[slot]]);
@@ -41,7 +42,7 @@ TEST_CASE_TEMPLATE(
   }
 }
 
-TEST_CASE("affine displacements of an ellipsoid are exact at the vertices' places on the polyhedron") {
+TEST_CASE("affine displacements of an ellipsoid are exact at the vertices' positions on the polyhedron") {
   const Ellipsoid<double> body({.axes = {0.03, 0.02, 0.015}});
   const auto mesh = body.mesh(600);
   const LinearInterpolation<double> linear(make_partition(body, mesh));
@@ -53,8 +54,8 @@ TEST_CASE("affine displacements of an ellipsoid are exact at the vertices' place
   std::vector<Vec3<double>> corners;
   for (const auto& point : part.points()) corners.push_back(affine(point.position));
   ContactDisplacement<double> contact;
-  contact.place = body.raycast(Vec3<double>::Zero(), Vec3<double>(0.01, 0.008, 0.006)).position;
-  contact.displacement = affine(on_polyhedron(contact.place));
+  contact.position = body.raycast(Vec3<double>::Zero(), Vec3<double>(0.01, 0.008, 0.006)).position;
+  contact.displacement = affine(on_polyhedron(contact.position));
   const auto field = field_of(linear, corners, contact);
   for (std::size_t slot = 0; slot < field.size(); ++slot) {
     const Vec3<double>& x = mesh.vertices[part.order()[slot]];
@@ -73,7 +74,7 @@ TEST_CASE("the field stays within the range of its corners, wherever the contact
     std::vector<Vec3<double>> corners(linear.partition().points().size());
     for (auto& u : corners) u = vector();
     ContactDisplacement<double> contact;
-    contact.place = vector();
+    contact.position = vector();
     contact.displacement = vector();
     Vec3<double> low = contact.displacement, high = low;
     for (const auto& u : corners) low = low.cwiseMin(u), high = high.cwiseMax(u);
@@ -89,7 +90,7 @@ TEST_CASE("a face whose corners stand still and that no contact splits does not 
   const LinearInterpolation<double> linear(make_partition(box, box.mesh(100)));
   std::vector<Vec3<double>> corners(8, Vec3<double>::Zero());
   ContactDisplacement<double> contact;
-  contact.place = Vec3<double>(0, 0.02, 0);
+  contact.position = Vec3<double>(0, 0.02, 0);
   contact.displacement = Vec3<double>(0, -0.001, 0);
   LinearInterpolation<double>::Load load;
   linear.prepare(corners, contact, load);

@@ -177,15 +177,15 @@ TEST_CASE(
 
 TEST_CASE("contact on an edge or a corner: the same weights from every side") {
   const auto part = make_partition(ellipsoid, ellipsoid.mesh(800));
-  const auto place = [](const Vec3<double>& d) {
+  const auto position = [](const Vec3<double>& d) {
     return ellipsoid.raycast(Vec3<double>::Zero(), d).position;
   };
   for (const Vec3<double>& d :
        {Vec3<double>(0.03, 0.02, 0), Vec3<double>(0, 0.001, 0.015), Vec3<double>(0.03, 0, 0)}) {
-    const auto middle = all_weights(part, part.locate(place(d)));
+    const auto middle = all_weights(part, part.locate(position(d)));
     for (int side = 0; side < 8; ++side) {
       const Vec3<double> off((side & 1) ? 1e-9 : -1e-9, (side & 2) ? 1e-9 : -1e-9, (side & 4) ? 1e-9 : -1e-9);
-      const auto near = all_weights(part, part.locate(place(d + off)));
+      const auto near = all_weights(part, part.locate(position(d + off)));
       double worst = 0;
       for (std::size_t slot = 0; slot < part.size(); ++slot) {
         for (std::size_t i = 0; i < middle[slot].size(); ++i)
@@ -234,7 +234,7 @@ TEST_CASE("a mesh sorted by face: the same triangles in space, and slots in the 
   }
 }
 
-TEST_CASE("places that make no sense are not located") {
+TEST_CASE("positions that make no sense are not located") {
   const auto part = make_partition(ellipsoid, ellipsoid.mesh(100));
   const double nan = std::numeric_limits<double>::quiet_NaN(),
                infinity = std::numeric_limits<double>::infinity();
@@ -261,7 +261,7 @@ TEST_CASE("set-up refuses what cannot be cut into faces") {
   doubled.push_back(points[0]);
   CHECK_THROWS_AS(make(doubled), SetupError);
   points[2].position.y() = std::numeric_limits<double>::quiet_NaN();
-  CHECK_THROWS_WITH(make(points), "FacePartition: place and normal must be finite, at extremal point 2");
+  CHECK_THROWS_WITH(make(points), "FacePartition: position and normal must be finite, at extremal point 2");
   normals.pop_back();
   CHECK_THROWS_AS(make(extremal_points(ellipsoid)), SetupError);
   CHECK_THROWS_AS((void)make_partition(ellipsoid, mesh, {.fade = 0.2}), SetupError);

@@ -35,7 +35,7 @@ struct Edge {
   Vec3<double> at(const I& interpolation, const Vec3<double>& u1, const Vec3<double>& u3, int i) const {
     std::vector<Vec3<double>> corners(6, Vec3<double>::Zero());
     corners[1] = u1, corners[3] = u3;
-    const auto field = field_of(interpolation, corners, {.place = Vec3<double>(-0.01, -0.01, -0.01)});
+    const auto field = field_of(interpolation, corners, {.position = Vec3<double>(-0.01, -0.01, -0.01)});
     return field[test::slot_of(phong.partition(), first + static_cast<std::uint32_t>(i))];
   }
   Vec3<double> normal(int i) const {
@@ -110,8 +110,8 @@ TEST_CASE("no vertex moves further than the largest corner") {
     double largest = 0;
     for (auto& u : corners) u = vector(), largest = std::max(largest, u.norm());
     ContactDisplacement<double> contact;
-    contact.place = vector(), contact.displacement = vector(),
-    contact.normal = body.closest(contact.place).normal;
+    contact.position = vector(), contact.displacement = vector(),
+    contact.normal = body.closest(contact.position).normal;
     largest = std::max(largest, contact.displacement.norm());
     double most = 0;
     for (const Vec3<double>& u : field_of(phong, corners, contact)) most = std::max(most, u.norm());
@@ -127,8 +127,8 @@ TEST_CASE("where all corners move alike along their normals, Phong inflates and 
   std::vector<Vec3<double>> corners;
   for (const auto& point : part.points()) corners.push_back(1e-3 * point.normal);
   ContactDisplacement<double> contact;
-  contact.place = 0.03 * Vec3<double>(1, 1, 1).normalized();
-  contact.normal = contact.place.normalized(), contact.displacement = 1e-3 * contact.normal;
+  contact.position = 0.03 * Vec3<double>(1, 1, 1).normalized();
+  contact.normal = contact.position.normalized(), contact.displacement = 1e-3 * contact.normal;
   const auto round = field_of(phong, corners, contact), flat = field_of(linear, corners, contact);
   double least = 1;
   for (const Face<double>& face : part.faces()) {

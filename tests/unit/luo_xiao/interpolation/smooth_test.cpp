@@ -33,8 +33,8 @@ TEST_CASE_TEMPLATE("affine displacements are exact on the curved surface itself,
   for (const Vec3<S>& d :
        {Vec3<S>(S(1), S(2), S(1)), Vec3<S>(S(1), S(1e-3), S(0)), Vec3<S>(S(0), S(0), S(-1))}) {
     ContactDisplacement<S> contact;
-    contact.place = body.raycast(Vec3<S>::Zero(), d).position;
-    contact.displacement = A * contact.place;
+    contact.position = body.raycast(Vec3<S>::Zero(), d).position;
+    contact.displacement = A * contact.position;
     const auto field = field_of(smooth, corners, contact);
     for (std::size_t slot = 0; slot < field.size(); ++slot) {
       const Vec3<S> exact = A * mesh.vertices[smooth.partition().order()[slot]];
@@ -66,7 +66,7 @@ TEST_CASE("spline: passes through its values; the moving site's function is 1 at
   }
 }
 
-TEST_CASE("rank test: sites in a plane, on a line, at one place") {
+TEST_CASE("rank test: sites in a plane, on a line, at one position") {
   const auto check = [](const std::vector<Vec3<double>>& sites, double across = 1e-10) {
     const TriharmonicSpline spline(sites);
     std::vector<double> values;
@@ -101,10 +101,10 @@ TEST_CASE("no jump as the contact comes to an extremal point and passes it") {
   std::vector<Vec3<double>> corners(6, Vec3<double>(1e-4, 2e-4, -1e-4));
   ContactDisplacement<double> contact;
   contact.displacement = Vec3<double>(0, -2e-3, 0);
-  contact.place = Vec3<double>(0, 0.03, 0);
+  contact.position = Vec3<double>(0, 0.03, 0);
   const auto there = field_of(smooth, corners, contact);
   for (const double angle : {1e-3, 1e-5, 1e-7, 1e-9, 1e-12}) {
-    contact.place = 0.03 * Vec3<double>(std::sin(angle) * 0.6, std::cos(angle), std::sin(angle) * 0.8);
+    contact.position = 0.03 * Vec3<double>(std::sin(angle) * 0.6, std::cos(angle), std::sin(angle) * 0.8);
     const auto near = field_of(smooth, corners, contact);
     double worst = 0;
     for (std::size_t slot = 0; slot < near.size(); ++slot)

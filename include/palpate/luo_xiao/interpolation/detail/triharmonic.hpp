@@ -30,7 +30,7 @@ namespace palpate {
 ///
 /// A further, moving site p gets the function `moving()` that is 0 at the sites and 1 at p. Close to a site
 /// (nearer than a quarter of that site's distance to its nearest fellow) it fades into that site's own
-/// function, because with two sites at one place there is no answer; it is 1 at p all the way.
+/// function, because with two sites at one position there is no answer; it is 1 at p all the way.
 ///
 /// | symbol | name    | unit | range                                       |
 /// |--------|---------|------|---------------------------------------------|

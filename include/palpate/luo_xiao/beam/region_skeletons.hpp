@@ -48,7 +48,7 @@ concept RegionCoupling = requires(double a) {
 ///
 /// K_jk is the stiffness of the beam between contacts j and k (V.A.1), its section the mean of theirs when
 /// coupled; each contact's skeleton is given the body's whole volume, so its sections do not depend on the
-/// others. Beams between contacts are held at `least_distance` of the sum of a contact's beam lengths,
+/// others. Beams between contacts are held at `min_distance` of the sum of a contact's beam lengths,
 /// because closer regions are about to merge.
 template <class K, RegionCoupling G = CoupledRegions, std::size_t M = 8>
 class RegionSkeletons {
@@ -60,7 +60,7 @@ class RegionSkeletons {
   using Contact = SkeletonContact<Scalar>;
   static constexpr bool active = true;  // as a coupling of ContactSolver
 
-  static constexpr double least_distance = 1e-3;
+  static constexpr double min_distance = 1e-3;
 
   struct Result {
     FixedVector<Load, M> loads;                ///< per contact: its beams to the extremal points, and d_j
@@ -111,9 +111,9 @@ class RegionSkeletons {
                                      std::size_t k) const noexcept {
     const double reach = (std::max)(result.loads[j].total_length, result.loads[k].total_length);
     const Vec3<double> apart =
-        contacts[j].place.template cast<double>() - contacts[k].place.template cast<double>();
+        contacts[j].position.template cast<double>() - contacts[k].position.template cast<double>();
     SkeletonBeam beam{unit_or<double>(apart, Vec3<double>::UnitX()),
-                      (std::max)(apart.norm(), least_distance * reach), 0, 0, Vec3<double>::Zero()};
+                      (std::max)(apart.norm(), min_distance * reach), 0, 0, Vec3<double>::Zero()};
     const double share = G::share_of_beam(static_cast<double>(contacts[j].normal_force),
                                           static_cast<double>(contacts[k].normal_force));
     const auto& theory = skeleton_.theory();
@@ -124,7 +124,7 @@ class RegionSkeletons {
     beam.transverse =
         share * (theory.transverse_stiffness(a, beam.length) + theory.transverse_stiffness(b, beam.length)) /
         2;
-    beam.transverse = (std::min)(beam.transverse, K::most_ratio * beam.axial);
+    beam.transverse = (std::min)(beam.transverse, K::max_ratio * beam.axial);
     return beam;
   }
   // K d = F in the scaled unknowns W^-1 d.

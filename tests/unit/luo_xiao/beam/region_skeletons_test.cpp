@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "unit/luo_xiao/beam/reference.hpp"
 
-#include <palpate/luo_xiao/beam/regions.hpp>
+#include <palpate/luo_xiao/beam/region_skeletons.hpp>
 
 #include <doctest/doctest.h>
 
@@ -50,7 +50,7 @@ Contacts<S> random_contacts(std::mt19937_64& random, std::size_t m) {
   std::uniform_real_distribution<double> force(0.2, 2);
   Contacts<S> contacts;
   for (std::size_t j = 0; j < m; ++j) {
-    contacts.push_back({.place = test::random_vector<S>(random, 0.03),
+    contacts.push_back({.position = test::random_vector<S>(random, 0.03),
                         .force = test::random_vector<S>(random, 1),
                         .normal_force = S(force(random))});
   }
@@ -63,7 +63,7 @@ test::ReferenceRegions reference(const std::vector<Vec3<S>>& points, const Conta
   test::ReferenceRegions r{{}, {}, {}, {}, E, volume, coupled};
   for (const auto& p : points) r.points.push_back(p.template cast<L>());
   for (const auto& a : contacts) {
-    r.places.push_back(a.place.template cast<L>());
+    r.positions.push_back(a.position.template cast<L>());
     r.forces.push_back(a.force.template cast<L>());
     r.share.emplace_back();
     for (const auto& b : contacts) {
@@ -231,8 +231,8 @@ TEST_CASE("superposed, as printed: a region of zero force receives a finite forc
   for (int i = 0; i < 8; ++i)
     points.push_back(Vec3<double>(i & 1 ? 0.03 : -0.03, i & 2 ? 0.06 : 0, i & 4 ? 0.03 : -0.03));
   const Vec3<double> down(0, -1, 0), none = Vec3<double>::Zero();
-  Contacts<double> pins{{.place = Vec3<double>(-0.01, 0.06, 0), .force = down, .normal_force = 1},
-                        {.place = Vec3<double>(0.01, 0.06, 0), .force = none, .normal_force = 0}};
+  Contacts<double> pins{{.position = Vec3<double>(-0.01, 0.06, 0), .force = down, .normal_force = 1},
+                        {.position = Vec3<double>(0.01, 0.06, 0), .force = none, .normal_force = 0}};
   const double literal = share(make<double, SuperposedRegions>(points), pins).from_others[1].norm();
   const double coupled = share(make<double>(points), pins).from_others[1].norm();
   pins[1].force = down;
@@ -257,7 +257,7 @@ TEST_CASE("turning and reordering the regions; a region on another, and on an ex
   auto turned = points;
   auto moved = contacts;
   for (auto& p : turned) p = Vec3<double>(R * p);
-  for (auto& c : moved) c.place = Vec3<double>(R * c.place), c.force = Vec3<double>(R * c.force);
+  for (auto& c : moved) c.position = Vec3<double>(R * c.position), c.force = Vec3<double>(R * c.force);
   std::swap(moved[0], moved[2]);
   const auto other = share(make<double>(turned), moved);
   const std::size_t to[] = {2, 1, 0};
@@ -268,8 +268,8 @@ TEST_CASE("turning and reordering the regions; a region on another, and on an ex
     }
   }
   for (const double away : {1e-3, 1e-6, 1e-12, 0.0}) {
-    contacts[1].place = contacts[0].place + Vec3<double>(away, 0, 0);
-    contacts[2].place = points[3] + Vec3<double>(0, away, 0);
+    contacts[1].position = contacts[0].position + Vec3<double>(away, 0, 0);
+    contacts[2].position = points[3] + Vec3<double>(0, away, 0);
     const auto close = share(make<double>(points), contacts);
     REQUIRE(close.shared);
     Vec3<double> sum = Vec3<double>::Zero();
@@ -290,7 +290,7 @@ TEST_CASE_TEMPLATE("bad input: no force anywhere; surplus regions are left out; 
                       (std::numeric_limits<S>::max)()}) {
     for (int what = 0; what < 3; ++what) {
       auto contacts = good;
-      if (what == 0) contacts[1].place.x() = bad;
+      if (what == 0) contacts[1].position.x() = bad;
       if (what == 1) contacts[1].force.y() = bad;
       if (what == 2) contacts[1].normal_force = bad;
       const auto result = share(several, contacts);

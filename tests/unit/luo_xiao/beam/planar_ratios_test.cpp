@@ -24,10 +24,10 @@ Planar make(const std::vector<Vec3<double>>& points) {
                 VolumePreserving<double>({.volume = 1e-4}));
 }
 
-Planar::Load share(const Planar& planar, const Vec3<double>& place, const Vec3<double>& F,
+Planar::Load share(const Planar& planar, const Vec3<double>& position, const Vec3<double>& F,
                    const Vec3<double>& D) {
   Planar::Load load;
-  planar.share({.place = place, .force = F, .displacement = D}, load);
+  planar.share({.position = position, .force = F, .displacement = D}, load);
   return load;
 }
 
@@ -98,7 +98,7 @@ TEST_CASE("rank test: symmetric about the load there is no unique answer, and no
   // Each of them is an ordinary case for the common end.
   const Skeleton<double> common(cube(), make(cube()).theory(), VolumePreserving<double>({.volume = 1e-4}));
   Skeleton<double>::Load good;
-  common.share({.place = Vec3<double>(0, 0.06, 0), .force = down}, good);
+  common.share({.position = Vec3<double>(0, 0.06, 0), .force = down}, good);
   CHECK(good.shared);
 }
 
@@ -117,9 +117,9 @@ TEST_CASE("in space the printed form has no answer: F is not in the plane of the
 
 TEST_CASE("the printed form on bad input: zero displacement, zero force, NaN") {
   const auto planar = make({{-0.03, 0, 0}, {0.02, 0, 0}, {0, -0.05, 0}});
-  const Vec3<double> place(0, 0.01, 0), F(0.1, -1, 0), D(1e-4, -1e-3, 0), zero = Vec3<double>::Zero();
-  CHECK(share(planar, place, F, D).shared);
-  CHECK_FALSE(share(planar, place, F, zero).shared);
-  CHECK_FALSE(share(planar, place, zero, D).shared);
-  CHECK_FALSE(share(planar, place, F, Vec3<double>(0, std::nan(""), 0)).shared);
+  const Vec3<double> position(0, 0.01, 0), F(0.1, -1, 0), D(1e-4, -1e-3, 0), zero = Vec3<double>::Zero();
+  CHECK(share(planar, position, F, D).shared);
+  CHECK_FALSE(share(planar, position, F, zero).shared);
+  CHECK_FALSE(share(planar, position, zero, D).shared);
+  CHECK_FALSE(share(planar, position, F, Vec3<double>(0, std::nan(""), 0)).shared);
 }

@@ -114,10 +114,10 @@ struct CommonEnd {
 /// For the plane only: in space (8) is three equations. Even there it has no unique answer for a skeleton
 /// symmetric about D (rank 1: the cube's top centre, the ellipsoid's pole), and unequal beams may push the
 /// wrong way. `share` says no, and every F_i is 0, unless the two columns differ in direction by more than
-/// `least_angle` and F lies in their plane to within `most_residual`.
+/// `min_angle` and F lies in their plane to within `max_residual`.
 struct PlanarRatios {
-  static constexpr double least_angle = 1e-6;    ///< [rad]
-  static constexpr double most_residual = 1e-6;  ///< of |F|: float coordinates are no flatter
+  static constexpr double min_angle = 1e-6;     ///< [rad]
+  static constexpr double max_residual = 1e-6;  ///< of |F|: float coordinates are no flatter
 
   [[nodiscard]] static bool share(std::span<SkeletonBeam> beams, const Vec3<double>& F, const Vec3<double>& D,
                                   Vec3<double>& d) noexcept {
@@ -136,9 +136,9 @@ struct PlanarRatios {
     b /= size_b;
     const Vec3<double> across = b - a * a.dot(b);
     const double sine2 = across.squaredNorm();
-    if (!(sine2 > least_angle * least_angle)) return false;
+    if (!(sine2 > min_angle * min_angle)) return false;
     const double y = across.dot(F) / sine2, x = a.dot(F) - y * a.dot(b);
-    if (!(stable_norm<double>(F - x * a - y * b) <= most_residual * size_F)) return false;
+    if (!(stable_norm<double>(F - x * a - y * b) <= max_residual * size_F)) return false;
     for (SkeletonBeam& beam : beams) {
       const double q = unit / beam.length;
       beam.force = along(beam, D) * (x / size_a * q) + (D - along(beam, D)) * (y / size_b * q * q * q);

@@ -42,7 +42,7 @@ template <BeamSection C>
 inline constexpr double release_blend = 0.01;
 
 /// Displacements of all extremal points [m], in their order, for a shared load; zeros for one that is not.
-/// `fixed` is o, the bottom centre, which does not move. Continuous in the contact's place.
+/// `fixed` is o, the bottom centre, which does not move. Continuous in the contact's position.
 template <class K>
 inline void release(const K& skeleton, const typename K::Load& load, const Vec3<typename K::Scalar>& fixed,
                     const Vec3<typename K::Scalar>& contact_displacement,

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "unit/luo_xiao/beam/reference.hpp"
 
+#include <palpate/luo_xiao/beam/end_release.hpp>
 #include <palpate/luo_xiao/beam/rectangular_section.hpp>
-#include <palpate/luo_xiao/beam/release.hpp>
 
 #include <doctest/doctest.h>
 
@@ -45,10 +45,10 @@ Skeleton<double> make(double nu = 0.5) {
                           VolumePreserving<double>({.volume = 5.02654824574366919e-5}));
 }
 
-std::vector<Vec3<double>> release_at(const Skeleton<double>& k, const Vec3<double>& place,
+std::vector<Vec3<double>> release_at(const Skeleton<double>& k, const Vec3<double>& position,
                                      const Vec3<double>& F, const Vec3<double>& D) {
   Skeleton<double>::Load load;
-  k.share({.place = place, .force = F}, load);
+  k.share({.position = position, .force = F}, load);
   std::vector<Vec3<double>> u(6);
   release(k, load, Vec3<double>(Vec3<double>::Zero()), D, std::span<Vec3<double>>(u));
   return u;
@@ -99,30 +99,30 @@ TEST_CASE("no load across the beam needs no direction y; nu = 1/2 keeps the volu
 
 TEST_CASE("skeleton: every extremal point moves as its beam says, the fixed centre stays") {
   const auto skeleton = make(0.3);
-  const Vec3<double> place = on_top(0.011, 0.004), F(0.2, -1, 0.1), D(0, -0.002, 0);
+  const Vec3<double> position = on_top(0.011, 0.004), F(0.2, -1, 0.1), D(0, -0.002, 0);
   Skeleton<double>::Load load;
-  skeleton.share({.place = place, .force = F}, load);
-  const auto u = release_at(skeleton, place, F, D);
-  test::ReferenceRegions r{{}, {place.cast<L>()}, {F.cast<L>()}, {{0}}, 1e6, 5.02654824574366919e-5L};
+  skeleton.share({.position = position, .force = F}, load);
+  const auto u = release_at(skeleton, position, F, D);
+  test::ReferenceRegions r{{}, {position.cast<L>()}, {F.cast<L>()}, {{0}}, 1e6, 5.02654824574366919e-5L};
   for (const auto& p : ellipsoid()) r.points.push_back(p.cast<L>());
   const VecL d = r.displacements()[0];
   const L area = r.area(0);
   for (std::size_t i = 0; i < 6; ++i) {
     const VecL e = r.points[i];
-    const VecL exact = literal(1e6, 0.3L, area, 3.6L / (2.6L * area), r.places[0] - e, r.own(0, i) * d, e);
+    const VecL exact = literal(1e6, 0.3L, area, 3.6L / (2.6L * area), r.positions[0] - e, r.own(0, i) * d, e);
     CHECK((u[i].cast<L>() - exact).norm() <=
           1e-12L * F.norm() * 0.05L / (area * 1e6L));  // the solve's rounding
   }
   CHECK(u[2] == Vec3<double>(Vec3<double>::Zero()));
-  const auto twice = release_at(skeleton, place, 2 * F, D);
+  const auto twice = release_at(skeleton, position, 2 * F, D);
   for (std::size_t i = 0; i < 6; ++i) CHECK((twice[i] - 2 * u[i]).norm() <= 1e-14 * u[3].norm() + 1e-18);
 }
 
 TEST_CASE("turning body, contact and load turns the displacements") {
   std::mt19937_64 random(seed + 1);
   const auto skeleton = make();
-  const Vec3<double> place = on_top(-0.008, 0.006), F(0.3, -1, 0.2), D(0, -0.002, 0.001);
-  const auto u = release_at(skeleton, place, F, D);
+  const Vec3<double> position = on_top(-0.008, 0.006), F(0.3, -1, 0.2), D(0, -0.002, 0.001);
+  const auto u = release_at(skeleton, position, F, D);
   for (int round = 0; round < 20; ++round) {
     const Mat3<double> R = test::random_rotation(random);
     auto points = ellipsoid();
@@ -130,7 +130,7 @@ TEST_CASE("turning body, contact and load turns the displacements") {
     const Skeleton<double> turned(points, skeleton.theory(),
                                   VolumePreserving<double>({.volume = 5.02654824574366919e-5}));
     Skeleton<double>::Load load;
-    turned.share({.place = Vec3<double>(R * place), .force = Vec3<double>(R * F)}, load);
+    turned.share({.position = Vec3<double>(R * position), .force = Vec3<double>(R * F)}, load);
     std::vector<Vec3<double>> v(6);
     release(turned, load, Vec3<double>(Vec3<double>::Zero()), Vec3<double>(R * D),
             std::span<Vec3<double>>(v));
@@ -144,7 +144,7 @@ TEST_CASE(
   const auto skeleton = make();
   const Vec3<double> F(0.1, -1, 0.05), D(0.0002, -0.002, 0);
   const auto top = release_at(skeleton, Vec3<double>(0, 0.04, 0), F, D);
-  CHECK((top[3] - D).norm() <= 1e-9 * D.norm());  // within least_length over release_blend
+  CHECK((top[3] - D).norm() <= 1e-9 * D.norm());  // within min_length over release_blend
   for (const double angle : {0.0, 0.7, 1.9, 2.6}) {
     double largest = 0;
     auto before = release_at(skeleton, on_top(-0.002 * std::cos(angle), -0.002 * std::sin(angle)), F, D);
@@ -167,19 +167,19 @@ TEST_CASE_TEMPLATE("release in the scene's scalar: rounding only; not shared giv
   const Skeleton<S> skeleton(points, make().theory(),
                              VolumePreserving<double>({.volume = 5.02654824574366919e-5}));
   typename Skeleton<S>::Load load;
-  const Vec3<double> place = on_top(0.01, 0.005), F(0.2, -1, 0);
+  const Vec3<double> position = on_top(0.01, 0.005), F(0.2, -1, 0);
   std::vector<Vec3<S>> u(6);
   const Vec3<S> o = Vec3<S>::Zero(), D(0, S(-0.002), 0);
   const test::HeapCount heap;
-  skeleton.share({.place = place.cast<S>(), .force = F.cast<S>()}, load);
+  skeleton.share({.position = position.cast<S>(), .force = F.cast<S>()}, load);
   release(skeleton, load, o, D, std::span<Vec3<S>>(u));
   CHECK(heap.allocations() == 0);
-  const auto exact = release_at(make(), place, F, D.template cast<double>());
+  const auto exact = release_at(make(), position, F, D.template cast<double>());
   for (std::size_t i = 0; i < 6; ++i) {
     CHECK((u[i].template cast<double>() - exact[i]).norm() <=
           0.01 * double(test::ulps<S>(64)));  // 10 mm; input rounding
   }
-  skeleton.share({.place = Vec3<S>(std::numeric_limits<S>::quiet_NaN(), S(0), S(0)), .force = F.cast<S>()},
+  skeleton.share({.position = Vec3<S>(std::numeric_limits<S>::quiet_NaN(), S(0), S(0)), .force = F.cast<S>()},
                  load);
   release(skeleton, load, o, D, std::span<Vec3<S>>(u));
   for (const auto& v : u) CHECK(v == Vec3<S>(Vec3<S>::Zero()));
