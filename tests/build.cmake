@@ -125,6 +125,8 @@ endif()
 if(UNIX)
   add_test(NAME house COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/check_house.sh ${PROJECT_SOURCE_DIR})
   add_test(NAME readme COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/check_readme.sh ${PROJECT_SOURCE_DIR})
+  add_test(NAME docs COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/check_docs.sh ${PROJECT_SOURCE_DIR})
+  add_test(NAME docs_refuses COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/check_docs_test.sh ${CMAKE_CURRENT_BINARY_DIR}/docs)
   add_test(NAME house_refuses COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/check_house_test.sh ${CMAKE_CURRENT_BINARY_DIR}/house)
 endif()
 

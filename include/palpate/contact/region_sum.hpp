@@ -3,6 +3,7 @@
 
 /// @file  The force of a region as a sum over its points (section IV.C).
 
+#include <palpate/core/simd_vec3.hpp>
 #include <palpate/core/vector.hpp>
 #include <palpate/geometry/concept.hpp>
 
@@ -13,19 +14,32 @@
 
 namespace palpate {
 
+namespace detail {
+/// As many registers at once as suit a formula over the points of a leaf.
+template <Real S>
+using leaf_simd = Simd<S, (simd_group<S>::size() < lane_count ? static_cast<int>(simd_group<S>::size())
+                                                              : static_cast<int>(lane_count))>;
+
+/// The largest of a leaf's numbers.
+template <Real S>
+[[nodiscard]] PALPATE_INLINE S max_of(const std::array<S, lane_count>& list) noexcept {
+  return reduce_max(Simd<S, static_cast<int>(lane_count)>(list.data()));
+}
+}  // namespace detail
+
 /// Sum over the points i of a region of F_i = (m_i/m) law(delta_i), along each point's own exit direction. No
 /// equation number; IV.C. A sum that points enter and leave at zero does not depend on the clustering, and is
 /// the gradient of a potential, so a tool without friction neither gains nor loses energy.
 template <Real S>
 struct RegionSum {
-  Vec3<S> force = Vec3<S>::Zero();   ///< on the tool [N]
-  Vec3<S> torque = Vec3<S>::Zero();  ///< about the tool's centre of mass [N m]
-  Vec3<S> moment = Vec3<S>::Zero();  ///< sum of |F_i| x_i [N m]
-  Vec3<S> exit = Vec3<S>::Zero();    ///< exit direction of the deepest point
-  Vec3<S> place = Vec3<S>::Zero();   ///< the deepest point [m]
-  S magnitude = S(0);                ///< sum of |F_i| [N]
-  S deepest = S(0);                  ///< largest delta_i [m]
-  S spread = S(0);                   ///< sum of |F_i|^2/A_i [N^2/m^2]
+  Vec3<S> force = Vec3<S>::Zero();     ///< on the tool [N]
+  Vec3<S> torque = Vec3<S>::Zero();    ///< about the tool's centre of mass [N m]
+  Vec3<S> moment = Vec3<S>::Zero();    ///< sum of |F_i| x_i [N m]
+  Vec3<S> exit = Vec3<S>::Zero();      ///< exit direction of the deepest point
+  Vec3<S> position = Vec3<S>::Zero();  ///< of the deepest point [m]
+  S magnitude = S(0);                  ///< sum of |F_i| [N]
+  S deepest = S(0);                    ///< largest delta_i [m]
+  S spread = S(0);                     ///< sum of |F_i|^2/A_i [N^2/m^2]
   std::uint32_t points = 0;
 
   /// Adds the point at x [m] whose force is `f` [N] times the exit direction `gradient`; `arm` = x - centre
@@ -42,7 +56,7 @@ struct RegionSum {
     if (depth > deepest) {
       deepest = depth;
       exit = gradient;
-      place = x;
+      position = x;
     }
   }
 
@@ -69,7 +83,7 @@ struct RegionSum {
   /// and leave at zero force.
   [[nodiscard]] Vec3<S> centre() const noexcept {
     if (magnitude > S(0)) return moment / magnitude;
-    return place;
+    return position;
   }
   /// |force| [N].
   [[nodiscard]] S normal_force() const noexcept { return force.norm(); }
@@ -97,7 +111,7 @@ class PointForce {
     torque = arm.cross(force);
     deepest = depth;
     points = 1;
-    place_ = x;
+    position_ = x;
     normal_ = gradient;
     normal_force_ = f;
     const S square = gradient.squaredNorm();  // of a unit vector off 1 by its roundings
@@ -111,45 +125,37 @@ class PointForce {
     normal_force_ *= factor;
   }
   [[nodiscard]] S area() const noexcept { return S(0); }
-  [[nodiscard]] Vec3<S> centre() const noexcept { return place_; }
+  [[nodiscard]] Vec3<S> centre() const noexcept { return position_; }
   [[nodiscard]] S normal_force() const noexcept { return normal_force_; }
   [[nodiscard]] Vec3<S> normal() const noexcept { return normal_; }
 
  private:
-  Vec3<S> place_ = Vec3<S>::Zero(), normal_ = Vec3<S>::UnitY();
+  Vec3<S> position_ = Vec3<S>::Zero(), normal_ = Vec3<S>::UnitY();
   S normal_force_ = S(0);
 };
 
-/// A RegionSum in the making, `lane_count` points at a time: lane i adds up the points i of all leaves,
-/// total() adds the lanes. By the cache line, whatever the vector flags.
+/// A RegionSum in the making, a leaf of `lane_count` points at a time. Entry i of every list sums point i of all
+/// leaves; total() adds the entries up.
 template <Real S>
-class alignas(64) LaneSum {
+class alignas(64) LeafSum {
  public:
+  using List = std::array<S, lane_count>;
+
   /// About this centre of mass [m].
-  explicit LaneSum(const Vec3<S>& centre_of_mass) noexcept : centre_(centre_of_mass) {}
+  explicit LeafSum(const Vec3<S>& centre_of_mass) noexcept : centre_(centre_of_mass) {}
 
   /// Adds points at x with forces f [N] along their exit directions; f is 0 and the depth <= 0 for those that
   /// do not belong. `per_area`: 1/A_i [1/m^2].
-  PALPATE_FLATTEN void add(const PointLanes<S>& x, const PenetrationLanes<S>& in,
-                           const detail::LaneArray<S>& f,
-                           const std::array<S, lane_count>& per_area) noexcept {
-    using detail::lane_array;
-    const Lanes px = lane_array(x.x), py = lane_array(x.y), pz = lane_array(x.z),
-                Fx = f * lane_array(in.gradient_x), Fy = f * lane_array(in.gradient_y),
-                Fz = f * lane_array(in.gradient_z);
-    const Lanes ax = px - centre_.x(), ay = py - centre_.y(), az = pz - centre_.z();
-    force_[0] += Fx, force_[1] += Fy, force_[2] += Fz;
-    torque_[0] += ay * Fz - az * Fy, torque_[1] += az * Fx - ax * Fz, torque_[2] += ax * Fy - ay * Fx;
-    moment_[0] += f * px, moment_[1] += f * py, moment_[2] += f * pz;
-    magnitude_ += f;
-    spread_ += f * (f * lane_array(per_area));
+  void add(const PointLanes<S>& x, const PenetrationLanes<S>& in, const List& f,
+           const List& per_area) noexcept {
+    for (std::size_t i = 0; i < lane_count; i += V::size()) add_part(i, x, in, f, per_area);
     for (const S depth : in.depth) sum_.points += depth > S(0) ? 1u : 0u;
-    if (!(lane_array(in.depth).maxCoeff() > sum_.deepest)) return;
+    if (!(detail::max_of(in.depth) > sum_.deepest)) return;
     for (std::size_t i = 0; i < in.depth.size(); ++i) {
       if (!(in.depth[i] > sum_.deepest)) continue;
       sum_.deepest = in.depth[i];
       sum_.exit = Vec3<S>(in.gradient_x[i], in.gradient_y[i], in.gradient_z[i]);
-      sum_.place = Vec3<S>(x.x[i], x.y[i], x.z[i]);
+      sum_.position = Vec3<S>(x.x[i], x.y[i], x.z[i]);
     }
   }
 
@@ -158,25 +164,53 @@ class alignas(64) LaneSum {
 
   [[nodiscard]] RegionSum<S> total() const noexcept {
     RegionSum<S> sum = sum_;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto k = static_cast<int>(axis);
-      sum.force[k] += force_[axis].sum();
-      sum.torque[k] += torque_[axis].sum();
-      sum.moment[k] += moment_[axis].sum();
-    }
-    sum.magnitude += magnitude_.sum();
-    sum.spread += spread_.sum();
+    sum.force += total(force_);
+    sum.torque += total(torque_);
+    sum.moment += total(moment_);
+    sum.magnitude += total(magnitude_);
+    sum.spread += total(spread_);
     return sum;
   }
 
  private:
-  using Lanes = detail::LaneArray<S>;
-  using Lanes3 = std::array<Lanes, 3>;
+  using V = detail::leaf_simd<S>;
+  struct List3 {
+    List x{}, y{}, z{};
+    [[nodiscard]] PALPATE_INLINE detail::SimdVec3<V> at(std::size_t i) const noexcept {
+      return {V(&x[i]), V(&y[i]), V(&z[i])};
+    }
+    PALPATE_INLINE void add(std::size_t i, const detail::SimdVec3<V>& a) noexcept {
+      LeafSum::add(x, i, a.x), LeafSum::add(y, i, a.y), LeafSum::add(z, i, a.z);
+    }
+  };
+  static PALPATE_INLINE void add(List& list, std::size_t i, const V& a) noexcept {
+    (V(&list[i]) + a).copy_to(&list[i]);
+  }
 
-  [[nodiscard]] static Lanes3 zero() noexcept { return {Lanes::Zero(), Lanes::Zero(), Lanes::Zero()}; }
+  /// The points from i on, as many as V holds.
+  PALPATE_INLINE void add_part(std::size_t i, const PointLanes<S>& x, const PenetrationLanes<S>& in,
+                               const List& forces, const List& per_area) noexcept {
+    using Vector = detail::SimdVec3<V>;
+    const Vector p{V(&x.x[i]), V(&x.y[i]), V(&x.z[i])};
+    const V f(&forces[i]);
+    const Vector F = f * Vector{V(&in.gradient_x[i]), V(&in.gradient_y[i]), V(&in.gradient_z[i])};
+    const Vector arm{p.x - centre_.x(), p.y - centre_.y(), p.z - centre_.z()};
+    force_.add(i, F);
+    torque_.add(i, cross(arm, F));
+    moment_.add(i, f * p);
+    add(magnitude_, i, f);
+    add(spread_, i, f * (f * V(&per_area[i])));
+  }
 
-  Lanes3 force_ = zero(), torque_ = zero(), moment_ = zero();
-  Lanes magnitude_ = Lanes::Zero(), spread_ = Lanes::Zero();
+  [[nodiscard]] static S total(const List& list) noexcept {
+    return detail::reduce(detail::Simd<S, static_cast<int>(lane_count)>(list.data()));
+  }
+  [[nodiscard]] static Vec3<S> total(const List3& list) noexcept {
+    return {total(list.x), total(list.y), total(list.z)};
+  }
+
+  List3 force_, torque_, moment_;
+  List magnitude_{}, spread_{};
   Vec3<S> centre_;
   RegionSum<S> sum_{};  // what is not a plain sum: the deepest point and the count
 };

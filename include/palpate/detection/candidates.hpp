@@ -3,6 +3,7 @@
 
 /// @file  Which points of the tool may touch: a walk through its tree of balls against the surface.
 
+#include <palpate/core/simd.hpp>
 #include <palpate/detection/tool_points.hpp>
 #include <palpate/geometry/concept.hpp>
 
@@ -20,20 +21,23 @@ template <Real S>
 
 /// X times each point.
 template <Real S>
-PALPATE_FLATTEN [[nodiscard]] inline PointLanes<S> place(const Pose<S>& X, const PointLanes<S>& p) noexcept {
+[[nodiscard]] inline PointLanes<S> transformed(const Pose<S>& X, const PointLanes<S>& p) noexcept {
+  using V = simd_at_most<S, static_cast<int>(lane_count)>;
   const auto& R = X.rotation;
   const auto& t = X.translation;
-  const LaneArray<S> px = lane_array(p.x), py = lane_array(p.y), pz = lane_array(p.z);
   PointLanes<S> x;
-  lane_array(x.x) = R(0, 0) * px + R(0, 1) * py + R(0, 2) * pz + t.x();
-  lane_array(x.y) = R(1, 0) * px + R(1, 1) * py + R(1, 2) * pz + t.y();
-  lane_array(x.z) = R(2, 0) * px + R(2, 1) * py + R(2, 2) * pz + t.z();
+  for (std::size_t i = 0; i < lane_count; i += V::size()) {
+    const V px(&p.x[i]), py(&p.y[i]), pz(&p.z[i]);
+    (R(0, 0) * px + R(0, 1) * py + R(0, 2) * pz + t.x()).copy_to(&x.x[i]);
+    (R(1, 0) * px + R(1, 1) * py + R(1, 2) * pz + t.y()).copy_to(&x.y[i]);
+    (R(2, 0) * px + R(2, 1) * py + R(2, 2) * pz + t.z()).copy_to(&x.z[i]);
+  }
   return x;
 }
 }  // namespace detail
 
 /// Calls visit(begin, count, x) for every leaf of the tool's tree with a point that may be inside the
-/// surface: `count` <= lane_count points from `begin` on, with x their places in object coordinates [m]. No
+/// surface: `count` <= lane_count points from `begin` on, with x their positions in object coordinates [m]. No
 /// equation.
 ///
 /// Precondition: X is usable (core/pose.hpp). A ball that surface.separated() says is apart is left out with
@@ -57,7 +61,7 @@ inline void for_each_candidate_leaf(const ToolPoints<S>& tool, const Pose<S>& X,
       continue;
     }
     if (node.skip == n + 1)
-      visit(node.begin, node.end - node.begin, detail::place(X, tool.lanes(node.begin)));
+      visit(node.begin, node.end - node.begin, detail::transformed(X, tool.lanes(node.begin)));
     ++n;
   }
 }

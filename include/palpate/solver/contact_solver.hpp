@@ -237,7 +237,9 @@ class ContactSolver {
   }
 
   /// Section VI: adds to each region's force what the other regions pass on through the body.
-  void couple(const Pose<S>& X, Wrench<S>& wrench) noexcept {
+  void couple(const Pose<S>& X, Wrench<S>& wrench) noexcept
+    requires(Coupling::active)
+  {
     if (contacts_.size() < 2) return;
     std::array<typename Coupling::Contact, max_regions> loaded;
     for (std::size_t j = 0; j < contacts_.size(); ++j) {
@@ -275,7 +277,9 @@ class ContactSolver {
   /// Carries friction over when regions merge or split: each region takes the share of every predecessor's
   /// tangential force and elastic energy that its normal force is of all of that predecessor's successors; so
   /// the sum of the forces is kept and no energy is added.
-  void inherit(const Pose<S>& X, const Sums& sums) noexcept {
+  void inherit(const Pose<S>& X, const Sums& sums) noexcept
+    requires(has_friction && ClusteredTopology<Contacts>)
+  {
     using Skew = typename Friction::Skew;
     const std::array<Stuck, max_regions> last = stuck_;
     std::array<S, max_regions> share{};  // of the predecessors' total normal force

@@ -49,6 +49,12 @@ concept HasMaxDepth = requires(const L& law) {
   { law.max_depth() } noexcept -> std::same_as<typename L::Scalar>;
 };
 
+template <class L,
+          class V>  // optional: F of depths in [0, max_depth()], V a register that counts as a number does
+concept HasForces = requires(const L& law, const V& depth) {
+  { law.forces(depth) } noexcept -> std::same_as<V>;
+};
+
 /// Contact force as a function of displacement. Beyond `max_depth()` force() stays at its maximum and
 /// stiffness() is 0, so that no law ever returns to another branch.
 template <class L>

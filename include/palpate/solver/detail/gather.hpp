@@ -76,7 +76,7 @@ inline void for_each_touching_leaf(const ToolPoints<S>& tool, const Pose<S>& X, 
                          PenetrationLanes<S>& in) noexcept {
     for (std::uint32_t i = count; i < x.x.size(); ++i)  // the last leaf is filled up with a point of its own
       in.depth[i] = in.gradient_x[i] = in.gradient_y[i] = in.gradient_z[i] = S(0);
-    if (lane_array(in.depth).maxCoeff() > S(0)) visit(begin, x, in);
+    if (max_of(in.depth) > S(0)) visit(begin, x, in);
   };
   if constexpr (HasPenetrationLanes<Object, 2 * lane_count>) {
     struct Leaf {
@@ -141,27 +141,28 @@ template <class Sharing, Real S>
 /// leaf's middle, a point of the tool.
 template <Real S, ForceModel Force>
 inline void add_leaf(const LeafShare<S>& share, const Force& force, const PointLanes<S>& x,
-                     const PenetrationLanes<S>& in, LaneSum<S>& sum) noexcept {
-  if constexpr (requires(const LaneArray<S>& depth) { force.forces(depth); }) {
-    const LaneArray<S> depth = lane_array(in.depth).max(S(0)).min(force.max_depth());
-    sum.add(x, in, lane_array(share.weight) * force.forces(depth), share.per_area);
+                     const PenetrationLanes<S>& in, LeafSum<S>& sum) noexcept {
+  std::array<S, lane_count> f;
+  using V = leaf_simd<S>;
+  if constexpr (HasForces<Force, V>) {
+    for (std::size_t i = 0; i < lane_count; i += V::size()) {
+      const V depth = (min)((max)(V(&in.depth[i]), S(0)), force.max_depth());
+      (V(&share.weight[i]) * force.forces(depth)).copy_to(&f[i]);
+    }
   } else if constexpr (ForceMap<Force>) {
     const Vec3<S> middle = mean(x);
     const auto law = force.at(middle);
-    LaneArray<S> f;
     Vec3<S> configurational = Vec3<S>::Zero();
-    for (std::size_t i = 0; i < share.weight.size(); ++i) {
-      f[static_cast<int>(i)] = share.weight[i] * law.force(in.depth[i]);
+    for (std::size_t i = 0; i < lane_count; ++i) {
+      f[i] = share.weight[i] * law.force(in.depth[i]);
       configurational += share.weight[i] * law.configurational_force(in.depth[i]);
     }
     sum.add(middle, configurational);
-    sum.add(x, in, f, share.per_area);
   } else {
-    LaneArray<S> f;
-    for (std::size_t i = 0; i < share.weight.size(); ++i)
-      f[static_cast<int>(i)] = in.depth[i] > S(0) ? share.weight[i] * force.force(in.depth[i]) : S(0);
-    sum.add(x, in, f, share.per_area);
+    for (std::size_t i = 0; i < lane_count; ++i)
+      f[i] = in.depth[i] > S(0) ? share.weight[i] * force.force(in.depth[i]) : S(0);
   }
+  sum.add(x, in, f, share.per_area);
 }
 }  // namespace detail
 
@@ -211,7 +212,7 @@ class Collector<SingleRegion<Sharing>, S> {
   template <ContactSurface Object, ForceModel Force>
   Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
                  std::array<RegionSum<S>, 1>& sums) noexcept {
-    LaneSum<S> lanes(X * tool.centre_of_mass());
+    LeafSum<S> lanes(X * tool.centre_of_mass());
     bool touching = false;
     detail::for_each_touching_leaf(
         tool, X, object,
@@ -263,22 +264,21 @@ class Collector<Regions<N, Sharing>, S> {
             point_[count] = begin + i;  // without a branch: overwritten by the next one unless it touches
             count += in.depth[i] > S(0) ? 1u : 0u;
           }
-          deepest = (std::max)(deepest, detail::lane_array(in.depth).maxCoeff());
+          deepest = (std::max)(deepest, detail::max_of(in.depth));
         });
-    Status status =
-        tracker_.update({point_.data(), count}, [&](std::size_t i) { return X * tool.point(point_[i]); });
+    Status status = tracker_.update({point_.data(), count}, Positions{&tool, &X, point_.data()});
     if (count == 0) return Status::ok;
     if (tracker_.changed()) find_slots(leaves, count);
     const Vec3<S> centre_of_mass = X * tool.centre_of_mass();
     for (std::size_t slot = 0; slot < N; ++slot) {
       const std::uint64_t bit = std::uint64_t(1) << slot;
       if ((met_ & bit) == 0) continue;
-      LaneSum<S> sum(centre_of_mass);
+      LeafSum<S> sum(centre_of_mass);
       for (std::size_t k = 0; k < leaves; ++k) {
         const Leaf& leaf = leaf_[k];
         if ((leaf.slots & bit) == 0) continue;
         // Placed anew: less work than to keep them, once other programs' data have taken the caches.
-        const PointLanes<S> x = detail::place(X, tool.lanes(leaf.begin));
+        const PointLanes<S> x = detail::transformed(X, tool.lanes(leaf.begin));
         if (leaf.slots == bit) {
           detail::add_leaf(share_[leaf.begin / lanes], force, x, leaf.in, sum);
           continue;
@@ -314,6 +314,13 @@ class Collector<Regions<N, Sharing>, S> {
   }
 
   static constexpr std::uint32_t lanes = static_cast<std::uint32_t>(lane_count);
+  /// Of the touching points [m]. A type of its own, so that the tracker is compiled once for all objects.
+  struct Positions {
+    const ToolPoints<S>* tool;
+    const Pose<S>* pose;
+    const std::uint32_t* point;
+    [[nodiscard]] Vec3<S> operator()(std::size_t i) const noexcept { return *pose * tool->point(point[i]); }
+  };
   struct Leaf {
     std::uint32_t begin;
     std::uint64_t slots;                          // of its touching points, as bits
