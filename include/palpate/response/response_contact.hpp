@@ -7,8 +7,7 @@
 #include <palpate/display/vertex_writer.hpp>
 #include <palpate/response/tick/contact_system.hpp>
 #include <palpate/response/tick/drawing.hpp>
-#include <palpate/response/tick/pressed_sphere.hpp>
-#include <palpate/response/tick/turned_field.hpp>
+#include <palpate/response/tick/field_sum.hpp>
 
 namespace palpate {
 
@@ -19,17 +18,7 @@ class ResponseTick {
  public:
   using Settings = typename detail::ContactSystem<Capacity>::Settings;
   explicit ResponseTick(const ResponseField& field, const Settings& settings = {})
-      : field_(&field),
-        contact_(field, settings),
-        total_(3 * field.stride(), 0.f),
-        second_(3 * field.stride(), 0.f),
-        near_(Capacity * 3 * field.stride(), 0.f),
-        weight_(field.touch().solved(), 0.f),
-        moment_(3 * field.touch().solved(), 0.f),
-        turned_(field),
-        drawing_(field) {
-    patch_.reserve(weight_.size());
-  }
+      : field_(&field), contact_(field, settings), sum_(field), drawing_(field) {}
 
   /// Forces that the tool exerts on the object, one per contact [N]; with `torques` its torques about the
   /// patches' middles, where they have moved to [N m]. More than `Capacity` contacts: the surplus gets no
@@ -47,20 +36,12 @@ class ResponseTick {
         count_ = 0;
         return status | Status::invalid_pose;
       }
-      auto& k = contact_[c];
-      k.x = contacts[c].place.template cast<double>();
-      k.m = -contacts[c].normal.template cast<double>().normalized();
-      k.d = contacts[c].displacement.template cast<double>();
-      k.rotation = contacts[c].rotation.template cast<double>();
-      k.a = double(contacts[c].radius);
-      k.ball = 0;
-      contact_.locate(k);
+      contact_.place(c, indenter(contacts[c]));
     }
     if (count_ == 0) return status;
     contact_.solve(count_);
     const double mu = field_->shear_modulus();
-    for (std::size_t c = 0; c < count_; ++c)
-      forces[c] = (mu * (contact_[c].P + contact_[c].extra)).template cast<S>();
+    for (std::size_t c = 0; c < count_; ++c) forces[c] = (mu * contact_.force(c)).template cast<S>();
     for (std::size_t c = 0; c < count_ && torques != nullptr; ++c)
       torques[c] = (mu * contact_.torque(c, count_)).template cast<S>();
     return status | Status::contact;
@@ -73,14 +54,14 @@ class ResponseTick {
     if (!is_usable(ResponseContact<S>{in.place, in.normal, in.radius, Vec3<S>(in.normal * in.depth)}) ||
         !is_finite(in.curvature) || !(in.depth > S(0)))
       return {};
-    auto& c = contact_[0];
-    c.x = in.place.template cast<double>();
-    c.m = -in.normal.template cast<double>().normalized();
-    c.d = double(in.depth) * c.m;
-    c.rotation.setZero();
-    c.ball = double(in.radius);
+    const Vec3<double> m = -in.normal.template cast<double>().normalized();
     count_ = 1;
-    return detail::press_sphere(*field_, contact_, c, double(in.curvature));
+    return contact_.solve_sphere({.x = in.place.template cast<double>(),
+                                  .m = m,
+                                  .d = double(in.depth) * m,
+                                  .rotation = Vec3<double>::Zero(),
+                                  .sphere = double(in.radius)},
+                                 double(in.curvature));
   }
 
   /// Displacement of every bound vertex, after `solve`: component i of vertex v at out[v * stride + i].
@@ -93,15 +74,23 @@ class ResponseTick {
   /// The same, handed out: emit(slot, u) with a lane of displacements from that slot on; a vertex may have
   /// several slots, all the same. An `emit` that can be assigned is copied and put back.
   ///
-  /// How: response_drawing.hpp.
+  /// How: tick/field_sum.hpp, tick/drawing.hpp.
   template <class Emit>
   void each(const ResponseDisplay& display, Emit& emit) noexcept {
-    combine();
-    drawing_.each(display, drawn(), emit);
+    sum_.add_up(contact_, count_);
+    drawing_.read(sum_.total(), sum_.drawn());
+    drawing_.each(display, sum_.drawn(), emit);
   }
 
  private:
-  using Wide = detail::FloatRegister;
+  template <Real S>
+  [[nodiscard]] static detail::Indenter indenter(const ResponseContact<S>& in) noexcept {
+    return {.x = in.place.template cast<double>(),
+            .m = -in.normal.template cast<double>().normalized(),
+            .d = in.displacement.template cast<double>(),
+            .rotation = in.rotation.template cast<double>(),
+            .a = double(in.radius)};
+  }
   template <Real S>
   struct Put {
     detail::VertexWriter<S> to;
@@ -111,123 +100,10 @@ class ResponseTick {
     }
   };
 
-  // Near fields and columns of all contacts, summed at the solve mesh's vertices.
-  void combine() noexcept {
-    using Row = Eigen::Map<const Eigen::ArrayXf>;
-    const std::size_t n = field_->stride();
-    const auto size = static_cast<Eigen::Index>(total_.size());
-    Eigen::Map<Eigen::ArrayXf> sum(total_.data(), size);
-    sum.setZero();
-    for (std::size_t c = 0; c < count_; ++c) {
-      const auto& k = contact_[c];
-      const double carried = contact_.find_patch(k, weight_.data(), patch_);
-      const auto column = [&](std::uint32_t node, std::size_t l) {
-        return Row(field_->column(node, l), size);
-      };
-      const bool wide = k.moments.share > 0;
-      Mat3<float> held = Mat3<float>::Zero();
-      if (wide) {
-        contact_.find_moments(k, weight_.data(), moment_.data());
-        held = k.moments.tensor(k.held).template cast<float>();
-      }
-      for (auto node : patch_) {
-        Vec3<float> f = weight_[node] * k.P.template cast<float>();
-        if (wide) {
-          Eigen::Map<Vec3<float>> q(&moment_[3 * node]);
-          f += held * q;
-          q.setZero();
-        }
-        sum += f[0] * column(node, 0) + f[1] * column(node, 1) + f[2] * column(node, 2);
-      }
-      for (auto node : patch_) weight_[node] = 0;
-      if (k.has_loads()) add_second(k);
-      detail::ContactNear& near = near_field_[c] = contact_.near_of(k);
-      if (carried < 1) near.scale(static_cast<float>(carried));
-      float* own = &near_[c * 3 * n];
-      for (std::size_t v = 0; v < n; v += detail::entries<Wide>) {
-        const auto at = [this, v](int axis) {
-          return detail::load_vector<Wide>(field_->coordinate(axis) + v);
-        };
-        const auto u = near(detail::Axes<Wide>{at(0), at(1), at(2)});
-        detail::store_vector(own + v, u.x);
-        detail::store_vector(own + n + v, u.y);
-        detail::store_vector(own + 2 * n + v, u.z);
-      }
-      sum += Row(own, size);
-    }
-    const Row free(field_->is_free(), static_cast<Eigen::Index>(n));
-    for (std::size_t axis = 0; axis < 3; ++axis) sum.segment(Eigen::Index(axis * n), Eigen::Index(n)) *= free;
-    turn();
-    hold_back();
-    drawing_.read(total_.data(), drawn());
-  }
-  [[nodiscard]] detail::DrawnContacts<Capacity> drawn() const noexcept {
-    return {contact_, near_field_, near_.data(), count_};
-  }
-
-  // What the body's rotation adds, as far as the contacts keep second order; held to twice d.
-  void turn() noexcept {
-    double kept = 1;
-    for (std::size_t c = 0; c < count_; ++c)
-      kept = (std::min)(kept, std::lerp(1., contact_[c].kept, contact_[c].grip));
-    if (count_ == 0 || kept == 0) return;
-    const float most =
-        turned_.find(total_.data(), near_.data(), contact_, count_, contact_.constants(), second_.data());
-    kept *= detail::smooth_limit(double(most), 4 * contact_.deepest2(count_));
-    const auto size = static_cast<Eigen::Index>(total_.size());
-    Eigen::Map<Eigen::ArrayXf>(total_.data(), size) +=
-        static_cast<float>(kept) * Eigen::Map<const Eigen::ArrayXf>(second_.data(), size);
-  }
-
-  // A body may move farther than the tool by its levers; a field beyond 4 d is one that the mesh does not
-  // resolve. It is drawn smaller: never a spike.
-  void hold_back() noexcept {
-    const auto share = static_cast<float>(detail::smooth_limit(largest(total_), 16 * contact_.deepest2(count_)));
-    if (!(share < 1)) return;
-    const std::size_t n = field_->stride();
-    Eigen::Map<Eigen::ArrayXf>(total_.data(), static_cast<Eigen::Index>(total_.size())) *= share;
-    Eigen::Map<Eigen::ArrayXf>(near_.data(), static_cast<Eigen::Index>(3 * count_ * n)) *= share;
-    for (std::size_t c = 0; c < count_; ++c) near_field_[c].scale(share);
-  }
-  // Largest u^2 of a field at the solve mesh's vertices.
-  [[nodiscard]] double largest(const std::vector<float>& field) const noexcept {
-    const auto n = static_cast<Eigen::Index>(field_->stride());
-    const Eigen::Map<const Eigen::ArrayXf> u(field.data(), 3 * n);
-    return double((u.head(n).square() + u.segment(n, n).square() + u.tail(n).square()).maxCoeff());
-  }
-
-  // The body's answer to the loads of second order. Where the mesh does not resolve it, it can be any size:
-  // held to about twice d.
-  void add_second(const detail::PlacedContact& c) noexcept {
-    using Row = Eigen::Map<const Eigen::ArrayXf>;
-    const auto n = static_cast<Eigen::Index>(field_->stride()), size = 3 * n;
-    Eigen::Map<Eigen::ArrayXf> second(second_.data(), size);
-    second.setZero();
-    for (const detail::PatchWeight& at : c.nodes) {
-      const Vec3<float> g = (c.share * at.weight * detail::loads_of_node(*field_, at.node, c.dipole, c.tilt))
-                                .template cast<float>();
-      const auto column = [&](std::size_t l) { return Row(field_->column(at.node, l), size); };
-      if (c.tilt.squaredNorm() > 0)
-        second += g[0] * column(3) + g[1] * column(4) + g[2] * column(5);
-      else
-        second += g[0] * column(3);
-      if (c.twist != 0) second += static_cast<float>(c.share * at.weight * c.twist) * column(6);
-    }
-    const double share = detail::smooth_limit(largest(second_), 4 * c.way2());
-    Eigen::Map<Eigen::ArrayXf>(total_.data(), size) += static_cast<float>(share) * second;
-  }
-
   const ResponseField* field_;
   detail::ContactSystem<Capacity> contact_;
-  std::array<detail::ContactNear, Capacity> near_field_{};
   std::size_t count_ = 0;
-  std::vector<float> total_;          // the field at the solve mesh's vertices, by coordinate
-  std::vector<float> second_;         // scratch
-  std::vector<float> near_;           // near field per contact, likewise
-  std::vector<float> weight_;         // per solved node: its part of a contact's force; 0 between uses
-  std::vector<float> moment_;         // three numbers each, likewise
-  std::vector<std::uint32_t> patch_;  // nodes with a part; never more than reserved
-  detail::TurnedField<Capacity> turned_;
+  detail::FieldSum<Capacity> sum_;
   detail::ResponseDrawing<Capacity> drawing_;
 };
 

@@ -19,7 +19,7 @@
 /// [james1999].
 
 #include <palpate/response/setup/response_columns.hpp>
-#include <palpate/response/tick/bent_edges.hpp>
+#include <palpate/response/tick/mid_edge_table.hpp>
 #include <palpate/response/tick/patch_table.hpp>
 #include <palpate/response/tick/rotation_table.hpp>
 
@@ -39,8 +39,8 @@ struct ResponseParts {
   std::vector<PatchTable::Moments> moments;
   std::vector<std::uint32_t> spread_begin;  ///< see PatchTable
   std::vector<TouchMesh::Share> spread;
-  std::vector<BendTable::Edges> edges;  ///< see BendTable
-  BendTable::Rows bends, raises;
+  std::vector<MidEdgeTable::Edges> edges;  ///< see MidEdgeTable
+  MidEdgeTable::Rows bends, raises;
 };
 
 class ResponseField {
@@ -94,7 +94,7 @@ class ResponseField {
                        std::move(parts.shares));
     table_ = PatchTable(touch_, std::move(parts.own), std::move(parts.second), std::move(parts.moments),
                         levels, std::move(parts.spread_begin), std::move(parts.spread));
-    bends_ = BendTable(mesh_, std::move(parts.edges), std::move(parts.bends), std::move(parts.raises));
+    bends_ = MidEdgeTable(mesh_, std::move(parts.edges), std::move(parts.bends), std::move(parts.raises));
     read_mesh();
   }
   [[nodiscard]] ResponseParts parts() const {
@@ -112,8 +112,8 @@ class ResponseField {
             table_.spread_begin(),
             table_.all_spread(),
             bends_.of_triangle(),
-            bends_.bends(),
-            bends_.raises()};
+            bends_.edge_rows(),
+            bends_.vertex_rows()};
   }
 
   [[nodiscard]] double E() const noexcept { return E_; }
@@ -125,7 +125,7 @@ class ResponseField {
   [[nodiscard]] double unresolved_area() const { return palpate::unresolved_area(mesh_); }
   [[nodiscard]] const TouchMesh& touch() const noexcept { return touch_; }
   [[nodiscard]] const PatchTable& table() const noexcept { return table_; }
-  [[nodiscard]] const BendTable& bends() const noexcept { return bends_; }
+  [[nodiscard]] const MidEdgeTable& bends() const noexcept { return bends_; }
   [[nodiscard]] const RotationTable& rotation() const noexcept { return rotation_; }
   /// Bytes that a tick may read.
   [[nodiscard]] std::size_t memory() const noexcept {
@@ -196,7 +196,7 @@ class ResponseField {
                "the boundary equation has no finite solution: is the mesh closed, without triangles that "
                "fold over?");
     mesh_ = bem.mesh();
-    bends_ = BendTable(mesh_, bem.bend());
+    bends_ = MidEdgeTable(mesh_, bem.bend());
     stride_ = padded(mesh_.vertices.size());
     columns_.resize(loads * 3 * stride_ * touch_.nodes().size(), 0.f);
     for (std::uint32_t k = 0; k < places.solved_or_held(); ++k)
@@ -272,7 +272,7 @@ class ResponseField {
   SolveMesh mesh_;
   TouchMesh touch_;
   PatchTable table_;
-  BendTable bends_;
+  MidEdgeTable bends_;
   RotationTable rotation_;
   std::vector<float> columns_, place_;
   std::size_t stride_ = 0;

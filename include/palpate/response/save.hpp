@@ -143,7 +143,7 @@ class ByteReader {
   body.put_list(parts.spread_begin);
   body.put_list(parts.spread);
   body.put_list(parts.edges);
-  for (const BendTable::Rows* rows : {&parts.bends, &parts.raises}) {
+  for (const MidEdgeTable::Rows* rows : {&parts.bends, &parts.raises}) {
     body.put_list(rows->begin);
     body.put_list(rows->weights);
   }
@@ -198,10 +198,10 @@ class ByteReader {
   parts.moments = in.get_list<PatchTable::Moments>();
   parts.spread_begin = in.get_list<std::uint32_t>();
   parts.spread = in.get_list<TouchMesh::Share>();
-  parts.edges = in.get_list<BendTable::Edges>();
-  for (BendTable::Rows* rows : {&parts.bends, &parts.raises}) {
+  parts.edges = in.get_list<MidEdgeTable::Edges>();
+  for (MidEdgeTable::Rows* rows : {&parts.bends, &parts.raises}) {
     rows->begin = in.get_list<std::uint32_t>();
-    rows->weights = in.get_list<BendTable::Weight>();
+    rows->weights = in.get_list<MidEdgeTable::Weight>();
   }
   parts.columns = in.get_list<float>();
   // Contents: a bad number here would be read out of bounds in a tick.
@@ -238,7 +238,7 @@ class ByteReader {
           "the tables' lengths are not the nodes'");
   require_shares(parts.spread_begin, parts.spread, levels * k, k, solved);
   bool bends = parts.edges.size() == parts.mesh.triangles.size();
-  for (const BendTable::Rows* rows : {&parts.bends, &parts.raises}) {
+  for (const MidEdgeTable::Rows* rows : {&parts.bends, &parts.raises}) {
     const auto& begin = rows->begin;
     bends = bends && !begin.empty() && begin.front() == 0 && begin.back() == rows->weights.size() &&
             std::is_sorted(begin.begin(), begin.end());

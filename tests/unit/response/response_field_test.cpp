@@ -99,16 +99,15 @@ TEST_CASE("near field of second order: the patch moves as one, no jump at its ed
   detail::ContactSystem<1> contacts[2] = {{field, {}}, {field, {.second_order = false}}};
   const double a = 0.005;
   for (auto& system : contacts) {
-    auto& c = system[0];
-    c.x = V(0.004, 0.0399, 0);
-    c.m = -V::UnitY();
-    c.d = V(0.0015, -0.004, 0);
-    c.a = a;
-    system.locate(c);
+    system.place(0, {.x = V(0.004, 0.0399, 0),
+                     .m = -V::UnitY(),
+                     .d = V(0.0015, -0.004, 0),
+                     .rotation = V::Zero(),
+                     .a = a});
     system.solve(1);
   }
-  const auto& c = contacts[0][0];
-  const detail::ContactNear both[2] = {contacts[0].near_of(c), contacts[1].near_of(contacts[1][0])};
+  const detail::Indenter& c = contacts[0].placed(0).tool;
+  const detail::NearField both[2] = {contacts[0].drawn(0).near, contacts[1].drawn(0).near};
   // What second order adds: to first order the near field undoes the slopes of w.
   const auto at = [&](double along, double down) {
     const V x = c.x + a * along * V(0.8, 0, 0.6) + a * down * c.m;

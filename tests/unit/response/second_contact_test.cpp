@@ -94,15 +94,16 @@ TEST_CASE(
   const Contact contacts[2] = {pressed(0.015, 0.003, V(2e-4, -1e-3, 1e-4)),
                                pressed(0.04, 0.003, V(0, -1e-3, 0))};
   for (std::size_t i = 0; i < 2; ++i) {
-    system[i].x = contacts[i].place;
-    system[i].m = -contacts[i].normal;
-    system[i].d = contacts[i].displacement;
-    system[i].a = contacts[i].radius;
-    system.locate(system[i]);
+    system.place(i, {.x = contacts[i].place,
+                     .m = -contacts[i].normal,
+                     .d = contacts[i].displacement,
+                     .rotation = V::Zero(),
+                     .a = contacts[i].radius});
   }
   system.solve(1);
-  const detail::PlacedContact& c = system[1];
-  const V bent = detail::coupling_of_moments(cube(), system[0], c).transpose() * system[0].P;
+  const detail::Indenter& c = system.placed(1).tool;
+  const V bent = detail::coupling_of_moments(cube(), system.placed(0), system.placed(1)).transpose() *
+                 system.solved(0).P;
   const double step = 0.5 * cube().mesh().length;  // over which the loads' columns are slopes
   std::vector<V> points;
   for (const V& t : {c.t1(), c.t2()})

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Bounds that are kept smoothly: of a compliance from below, so that no force is larger than d /
-/// (least compliance); of what a mesh may not resolve from above. Per tick.
+/// @file Bounds that are kept smoothly: of a compliance from below, so that no force exceeds d / (least
+/// compliance); of what a mesh may not resolve from above. Per tick.
 
 #include <palpate/core/vector.hpp>
 
@@ -12,15 +12,16 @@
 
 namespace palpate::detail {
 
-/// Makes the eigenvalues lambda of symmetric C (of fixed size: no heap) max(|lambda|, least), least > 0;
-/// those above stay. Continuous in C. A true one is positive: one that is far below 0 is off by at least as
-/// much, so that mode may well give way.
+/// Makes the eigenvalues lambda of symmetric C (of fixed size: no heap) max(|lambda|, min), min > 0; larger ones
+/// keep their value. Continuous in C. A true eigenvalue is positive: one far below 0 is wrong by at least its
+/// size, so that mode may well be as compliant as that.
 ///
-/// Jacobi's rotations, until what is left off the diagonal is 1e-9 of what is on it; 4 to 6 sweeps met, at
-/// most 10 done. Eigen's solver is as fast for 3 to 6 rows, and costs each including file 13 s of gcc 12.
-/// Source: [golub2013], 8.5.
+/// Jacobi's rotations until the sum of squares off the diagonal is 1e-18 of that on it. 4 to 6 sweeps were met;
+/// 10 is the limit, for a matrix that is not finite. A rotation is left out where its entry is below that bound
+/// alone. Eigen's solver is as fast for 3 to 6 rows, but costs each including file 13 s of gcc 12. Source:
+/// [golub2013], 8.5.
 template <class M>
-void bound_below(M& C, double least) noexcept {
+void bound_below(M& C, double min) noexcept {
   constexpr Eigen::Index n = M::RowsAtCompileTime;
   M A = C, V = M::Identity();  // V^T C V = A
   const auto rotate = [](double c, double s, double* x, double* y) {
@@ -52,29 +53,35 @@ void bound_below(M& C, double least) noexcept {
       }
   }
   for (Eigen::Index k = 0; k < n; ++k) {
-    const double missing = (std::max)(std::abs(A(k, k)), least) - A(k, k);
+    const double missing = (std::max)(std::abs(A(k, k)), min) - A(k, k);
     if (!(missing > 0)) continue;
     for (Eigen::Index j = 0; j < n; ++j)
       for (Eigen::Index i = 0; i < n; ++i) C(i, j) += missing * V(i, k) * V(j, k);
   }
 }
 
-/// True when C - least I is positive definite (Sylvester).
-[[nodiscard]] inline bool is_bounded_below(const Mat3<double>& C, double least) noexcept {
-  const double a = C(0, 0) - least, b = C(1, 1) - least, c = C(2, 2) - least;
+/// True when C - min I is positive definite (Sylvester's criterion).
+[[nodiscard]] inline bool is_bounded_below(const Mat3<double>& C, double min) noexcept {
+  const double a = C(0, 0) - min, b = C(1, 1) - min, c = C(2, 2) - min;
   const double minor = a * b - C(1, 0) * C(1, 0);
   const double det =
       c * minor - a * C(2, 1) * C(2, 1) - b * C(2, 0) * C(2, 0) + 2 * C(1, 0) * C(2, 0) * C(2, 1);
   return a > 0 && minor > 0 && det > 0;
 }
 
-/// (1 + r^8)^(-1/8), r^2 = size2 / most2 >= 0: what keeps a vector of squared length size2 below most2; 1
-/// where it is.
-[[nodiscard]] inline double smooth_limit(double size2, double most2) noexcept {
-  const double r2 = size2 / (most2 + (std::numeric_limits<double>::min)()), r8 = r2 * r2 * r2 * r2;
-  // Most are small, and roots take their time: the series, to the last digit.
+/// Factor (1 + r^8)^(-1/8), r^2 = size2 / max2 >= 0, that keeps a vector of squared length size2 below max2 and
+/// leaves a small one alone. The power 8: within 1 % of 1 up to r = 0.7, of 1/r from r = 1.4 on.
+[[nodiscard]] inline double smooth_limit(double size2, double max2) noexcept {
+  const double r2 = size2 / (max2 + (std::numeric_limits<double>::min)()), r8 = r2 * r2 * r2 * r2;
+  // Most are small, and roots take their time: the binomial series, to the last digit below 1e-3.
   if (r8 < 1e-3) return 1 + r8 * (-1. / 8 + r8 * (9. / 128 + r8 * (-51. / 1024 + r8 * (1275. / 32768))));
   return 1 / std::sqrt(std::sqrt(std::sqrt(1 + r8)));
+}
+
+/// 3 t^2 - 2 t^3 of t = x, clamped to [0, 1]: from 0 to 1 without a jump of value or slope.
+[[nodiscard]] inline double smooth_step(double x) noexcept {
+  const double t = std::clamp(x, 0.0, 1.0);
+  return t * t * (3 - 2 * t);
 }
 
 }  // namespace palpate::detail

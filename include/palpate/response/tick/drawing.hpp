@@ -1,29 +1,24 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file From the solve mesh's vertices to those of a display, under solved contacts. Per tick.
+/// @file From the vertices of the boundary element mesh to those of a display, under solved contacts. Per tick.
 ///
-/// The field is quadratic over the solve mesh's triangles within 2.5 edges of a contact, elsewhere linear
-/// between raised vertices (bent_edges.hpp); within one edge of a patch the contact's own near field is taken
-/// at the vertex itself instead of its interpolant.
+/// The field is quadratic over the mesh's triangles within 2.5 edges of a contact, elsewhere linear between raised
+/// vertices (mid_edge_correction.hpp); within one edge of a patch the contact's own near field is taken at the vertex
+/// itself instead of its interpolant.
 
 #include <palpate/response/response_display.hpp>
-#include <palpate/response/tick/bent_edges.hpp>
-#include <palpate/response/tick/contact_system.hpp>
+#include <palpate/response/tick/mid_edge_correction.hpp>
 #include <palpate/response/tick/pressed_sphere.hpp>
 
 #include <type_traits>
 
 namespace palpate::detail {
 
-/// What is drawn: solved contacts, their near fields, and those at the solve mesh's vertices, one contact
-/// after the other, by coordinate.
-template <std::size_t Capacity>
+/// What is drawn: contacts, and their near fields at the mesh's vertices, one contact after the other, by coordinate.
 struct DrawnContacts {
-  const ContactSystem<Capacity>& contact;
-  const std::array<ContactNear, Capacity>& near;
+  std::span<const DrawnContact> contact;
   const float* own;
-  std::size_t count;
 };
 
 /// Holds the buffers; the field must outlive it.
@@ -35,25 +30,26 @@ class ResponseDrawing {
         total_(4 * field.stride(), 0.f),
         raised_(total_),
         close_(whole<Lane>(field.mesh().triangles.size())),
-        bends_(field.bends(), field.stride()) {}
+        corrections_(field.bends(), field.stride()) {}
 
   /// `total`: the field at the solve mesh's vertices, by coordinate.
-  void read(const float* total, const DrawnContacts<Capacity>& contacts) noexcept {
+  void read(const float* total, const DrawnContacts& contacts) noexcept {
     const std::size_t n = field_->stride();
     for (std::size_t v = 0; v < n; v += lane_size)
       store_by_fours(&total_[4 * v], lane_at(total + v), lane_at(total + n + v), lane_at(total + 2 * n + v));
-    const double d2 = contacts.contact.deepest2(contacts.count);
-    const auto bend_reach = static_cast<float>(2.5 * field_->mesh().length);
-    bends_.read(total, contacts.own, n, contacts.near, contacts.count, bend_reach);
-    bends_.raise({field_->coordinate(0), field_->coordinate(1), field_->coordinate(2)}, total_.data(),
-                 contacts.near, contacts.count, bend_reach, static_cast<float>(0.5 * std::sqrt(d2)),
-                 raised_.data());
+    double d2 = 0;
+    for (const DrawnContact& c : contacts.contact) d2 = (std::max)(d2, c.tool.displacement2());
+    const auto reach = static_cast<float>(tick::mid_edge_reach * field_->mesh().length);
+    corrections_.read(total, contacts.own, n, contacts.contact, reach);
+    corrections_.raise({field_->coordinate(0), field_->coordinate(1), field_->coordinate(2)}, total_.data(),
+                       contacts.contact, reach,
+                       static_cast<float>(tick::max_vertex_correction * std::sqrt(d2)), raised_.data());
   }
 
   /// emit(slot, u) with a lane of displacements from that slot on, until all of a display have theirs. An
   /// `emit` that can be assigned is copied and put back.
   template <class Emit>
-  void each(const ResponseDisplay& display, const DrawnContacts<Capacity>& contacts, Emit& emit) noexcept {
+  void each(const ResponseDisplay& display, const DrawnContacts& contacts, Emit& emit) noexcept {
     find_close(display, contacts);
     spread(display, emit);
     for (std::size_t i = 0; i < display.spans().size(); ++i)
@@ -62,27 +58,29 @@ class ResponseDrawing {
 
  private:
   using Wide = FloatRegister;
-  using Bend = typename BentEdges<Capacity>::OfTriangle;
+  using Correction = typename MidEdgeCorrection<Capacity>::OfTriangle;
   static constexpr std::uint32_t wide = entries<Wide>;
 
   // Where near fields are exact.
-  [[nodiscard]] float reach() const noexcept { return static_cast<float>(field_->mesh().length); }
+  [[nodiscard]] float reach() const noexcept {
+    return static_cast<float>(tick::near_field_reach * field_->mesh().length);
+  }
   // Above 0 for a sphere that comes within reach of a contact. `S`: a number or a lane of them.
   template <class S>
   [[nodiscard]] PALPATE_INLINE S within_reach(const S& x, const S& y, const S& z, const S& radius,
-                                              const ContactNear& k) const noexcept {
-    const S rx = x - k.place.x(), ry = y - k.place.y(), rz = z - k.place.z(), most = radius + (k.a + reach());
+                                              const NearField& k) const noexcept {
+    const S rx = x - k.x.x(), ry = y - k.x.y(), rz = z - k.x.z(), most = radius + (k.a + reach());
     return most * most - (rx * rx + ry * ry + rz * rz);
   }
   // Which spans have vertices within reach of a contact, or may have.
-  void find_close(const ResponseDisplay& display, const DrawnContacts<Capacity>& contacts) noexcept {
+  void find_close(const ResponseDisplay& display, const DrawnContacts& contacts) noexcept {
     const ResponseDisplay::Spheres& around = display.around();
     for (std::size_t i = 0; i < around.radius.size(); i += lane_size) {
       const auto from = [i](const std::vector<float>& list) { return lane_at(&list[i]); };
       const Lane x = from(around.x), y = from(around.y), z = from(around.z), radius = from(around.radius);
       Lane inside = four(-1);
-      for (std::size_t c = 0; c < contacts.count; ++c)
-        inside = larger(inside, within_reach(x, y, z, radius, contacts.near[c]));
+      for (std::size_t c = 0; c < contacts.contact.size(); ++c)
+        inside = larger(inside, within_reach(x, y, z, radius, contacts.contact[c].near));
       store_vector(&close_[i], inside);
     }
   }
@@ -103,15 +101,15 @@ class ResponseDrawing {
               at0[2] + b1 * edge1[2] + b2 * edge2[2]};
     }
   };
-  // The same with the bends of the edges, where there are any.
+  // The same with mid-edge corrections, where there are any.
   struct Interpolant {
     Linear linear;
-    Bend bend;
-    bool bent;
+    Correction correction;
+    bool corrected;
     template <class V>
     [[nodiscard]] PALPATE_INLINE Axes<V> operator()(const V& b1, const V& b2) const noexcept {
       Axes<V> u = linear(b1, b2);
-      if (bent) u += bend(b1, b2);
+      if (corrected) u += correction(b1, b2);
       return u;
     }
   };
@@ -119,11 +117,11 @@ class ResponseDrawing {
     const auto& [p, q, r] = field_->mesh().triangles[triangle];
     Interpolant u;
     u.linear = {lane_at(&raised_[4 * p]), lane_at(&raised_[4 * q]), lane_at(&raised_[4 * r])};
-    u.bent = !field_->mesh().fixed_triangle[triangle] && bends_.find(triangle, u.bend);
+    u.corrected = !field_->mesh().fixed_triangle[triangle] && corrections_.find(triangle, u.correction);
     return u;
   }
   // The same of contact c's near field.
-  [[nodiscard]] Interpolant own_over(std::size_t triangle, const DrawnContacts<Capacity>& contacts,
+  [[nodiscard]] Interpolant own_over(std::size_t triangle, const DrawnContacts& contacts,
                                      std::size_t c) const noexcept {
     const std::size_t n = field_->stride();
     const auto at = [n, own = contacts.own + 3 * n * c](std::uint32_t v) {
@@ -132,7 +130,7 @@ class ResponseDrawing {
     const auto& [p, q, r] = field_->mesh().triangles[triangle];
     Interpolant u;
     u.linear = {at(p), at(q), at(r)};
-    u.bent = bends_.find_near(c, triangle, u.bend);
+    u.corrected = corrections_.find_near(c, triangle, u.correction);
     return u;
   }
 
@@ -147,7 +145,7 @@ class ResponseDrawing {
       if (is_close(display, s)) continue;
       const ResponseDisplay::Span span = spans[s];
       const Interpolant total = total_over(span.triangle);
-      if (total.bent) {
+      if (total.corrected) {
         for (std::uint32_t i = span.begin; i < span.end; i += lane_size)
           out(i, total(lane_at(weight1 + i), lane_at(weight2 + i)));
       } else {  // most: a loop without the question
@@ -160,7 +158,7 @@ class ResponseDrawing {
 
   // One that is: the same with the near fields exact, fading to their interpolants at the end of their reach.
   template <class Emit>
-  void refine(const ResponseDisplay& display, std::size_t s, const DrawnContacts<Capacity>& contacts,
+  void refine(const ResponseDisplay& display, std::size_t s, const DrawnContacts& contacts,
               Emit& emit) const noexcept {
     const ResponseDisplay::Span& span = display.spans()[s];
     const Refined refined(*this, display, s, contacts);
@@ -176,13 +174,13 @@ class ResponseDrawing {
     std::array<Interpolant, Capacity> own;
 
     Refined(const ResponseDrawing& drawing, const ResponseDisplay& display, std::size_t s,
-            const DrawnContacts<Capacity>& contacts) noexcept {
+            const DrawnContacts& contacts) noexcept {
       const std::uint32_t triangle = display.spans()[s].triangle;
       total = drawing.total_over(triangle);
       const ResponseDisplay::Spheres& around = display.around();
-      for (std::uint32_t c = 0; c < contacts.count; ++c) {
+      for (std::uint32_t c = 0; c < contacts.contact.size(); ++c) {
         if (!(drawing.within_reach(around.x[s], around.y[s], around.z[s], around.radius[s],
-                                   contacts.near[c]) > 0))
+                                   contacts.contact[c].near) > 0))
           continue;
         close.push_back(c);
         own[c] = drawing.own_over(triangle, contacts, c);
@@ -192,57 +190,57 @@ class ResponseDrawing {
   // A register of slots from i on.
   template <class V, class Emit>
   PALPATE_INLINE void refine_at(const ResponseDisplay& display, std::uint32_t i, const Refined& span,
-                                const DrawnContacts<Capacity>& contacts, Emit& emit) const noexcept {
+                                const DrawnContacts& contacts, Emit& emit) const noexcept {
     const auto from = [i](const float* list) { return load_vector<V>(list + i); };
     const V b1 = from(display.b1()), b2 = from(display.b2());
     const Axes<V> at{from(display.x()), from(display.y()), from(display.z())};
     Axes<V> u = span.total(b1, b2);
     const float reach = this->reach();
-    bool held = false;
+    bool on_patch = false;
     for (auto c : span.close) {
-      const ContactNear& k = contacts.near[c];
-      const V rx = at.x - k.place.x(), ry = at.y - k.place.y(), rz = at.z - k.place.z(),
-              r2 = rx * rx + ry * ry + rz * rz;
+      const NearField& k = contacts.contact[c].near;
+      const V rx = at.x - k.x.x(), ry = at.y - k.x.y(), rz = at.z - k.x.z(), r2 = rx * rx + ry * ry + rz * rz;
       const float nearest = least_of(r2);
       if (nearest >= (reach + k.a) * (reach + k.a)) continue;
-      held = held || nearest < 5 * k.a * k.a;  // beyond what a ball's patch can reach
-      const V weight = between(V((reach + k.a - root(r2)) * (4 / reach)), 0, 1);
+      // A sphere moves what lies within two radii (rest_on_sphere), a patch what lies within one.
+      on_patch = on_patch || nearest < 5 * k.a * k.a;
+      const V weight = between(V((reach + k.a - root(r2)) * (1 / (tick::reach_fade * reach))), 0, 1);
       const Axes<V> exact = k(at), drawn = span.own[c](b1, b2);
       u.x += weight * (exact.x - drawn.x);
       u.y += weight * (exact.y - drawn.y);
       u.z += weight * (exact.z - drawn.z);
     }
-    if (held)
-      for (auto c : span.close) hold(contacts.contact[c], contacts.near[c], at, reach, u);
+    if (on_patch)
+      for (auto c : span.close) follow(contacts.contact[c], at, reach, u);
     detail::each_four<V>([&](auto k) PALPATE_INLINE_LAMBDA {
       emit(i + k, Lane3{four_of<k>(u.x), four_of<k>(u.y), four_of<k>(u.z)});
     });
   }
 
-  // The patch moves by d and turns with the tool, as far as the contact grips; beneath a ball the surface
-  // lies on it.
+  // The patch moves by d and rotates with the tool, as far as the contact is active; beneath a sphere the surface lies
+  // on it.
   template <class V>
-  static void hold(const PlacedContact& c, const ContactNear& near, const Axes<V>& at, float reach,
-                   Axes<V>& u) noexcept {
-    const V rx = at.x - near.place.x(), ry = at.y - near.place.y(), rz = at.z - near.place.z(),
+  static void follow(const DrawnContact& c, const Axes<V>& at, float reach, Axes<V>& u) noexcept {
+    const NearField& near = c.near;
+    const V rx = at.x - near.x.x(), ry = at.y - near.x.y(), rz = at.z - near.x.z(),
             r2 = rx * rx + ry * ry + rz * rz;
-    if (c.ball > 0) {
+    if (near.is_sphere) {
       for (std::uint32_t l = 0; l < entries<V>; ++l) {
         if (r2[l] > 4 * near.a * near.a) continue;
         Vec3<double> v(double(u.x[l]), double(u.y[l]), double(u.z[l]));
-        rest_on_ball(c, Vec3<double>(double(at.x[l]), double(at.y[l]), double(at.z[l])), double(reach), v);
+        rest_on_sphere(c, Vec3<double>(double(at.x[l]), double(at.y[l]), double(at.z[l])), double(reach), v);
         u.x[l] = static_cast<float>(v[0]), u.y[l] = static_cast<float>(v[1]),
         u.z[l] = static_cast<float>(v[2]);
       }
       return;
     }
-    // Over to the field outside within a fiftieth of the radius: a vertex that comes in moves fast, and does
-    // not jump.
-    const Vec3<float> d = c.d.template cast<float>();
-    const V inside = between(V(51.f - 50.f / near.a * root(r2)), 0, 1) * static_cast<float>(c.grip);
+    // Over the last fiftieth of the radius to the field outside: a vertex that comes in moves fast, and does not jump.
+    constexpr float per_edge = 1 / tick::patch_edge;
+    const Vec3<float> d = c.tool.d.template cast<float>();
+    const V inside = between(V(1.f + per_edge - per_edge / near.a * root(r2)), 0, 1) * near.activation;
     Axes<V> to{all_of<V>(d.x()), all_of<V>(d.y()), all_of<V>(d.z())};
-    if (c.is_turned()) {
-      const Mat3<float>& t = near.turned;
+    if (c.tool.is_rotated()) {
+      const Mat3<float>& t = near.rotation;
       to.x += t(0, 0) * rx + t(0, 1) * ry + t(0, 2) * rz;
       to.y += t(1, 0) * rx + t(1, 1) * ry + t(1, 2) * rz;
       to.z += t(2, 0) * rx + t(2, 1) * ry + t(2, 2) * rz;
@@ -253,10 +251,10 @@ class ResponseDrawing {
   }
 
   const ResponseField* field_;
-  std::vector<float> total_;   // the field at the solve mesh's vertices, four numbers each
-  std::vector<float> raised_;  // the same, raised where its bends are left out
+  std::vector<float> total_;   // the field at the mesh's vertices, four numbers each
+  std::vector<float> raised_;  // the same, raised where mid-edge corrections are left out
   std::vector<float> close_;   // by span of the display: above 0 within reach of a contact
-  BentEdges<Capacity> bends_;
+  MidEdgeCorrection<Capacity> corrections_;
 };
 
 }  // namespace palpate::detail

@@ -6,8 +6,8 @@
 #include <palpate/elasticity/flat_punch.hpp>
 #include <palpate/response/setup/moment_loads.hpp>
 #include <palpate/response/setup/parallel.hpp>
-#include <palpate/response/tick/bent_edges.hpp>
 #include <palpate/response/tick/load_mesh.hpp>
+#include <palpate/response/tick/mid_edge_table.hpp>
 
 namespace palpate {
 
@@ -53,7 +53,7 @@ class PatchTable {
   /// `column(k, l)` points to the field of load l (ResponseField::loads) of node k: x of every vertex,
   /// y and z `stride` further each.
   template <class Column>
-  PatchTable(const SolveMesh& mesh, const BendTable& bends, const TouchMesh& touch, unsigned threads,
+  PatchTable(const SolveMesh& mesh, const MidEdgeTable& bends, const TouchMesh& touch, unsigned threads,
              std::size_t stride, const Column& column)
       : unit_(unit(touch)) {
     Vec3<double> low = mesh.vertices[0], high = low;
@@ -262,7 +262,8 @@ class PatchTable {
   }
 
   // Weights of the solve mesh's vertices in the displacement at each node's place.
-  [[nodiscard]] static std::vector<std::vector<Weight>> seen_at(const SolveMesh& mesh, const BendTable& bends,
+  [[nodiscard]] static std::vector<std::vector<Weight>> seen_at(const SolveMesh& mesh,
+                                                                const MidEdgeTable& bends,
                                                                 const TouchMesh& touch) {
     std::vector<std::vector<Weight>> out(touch.nodes().size());
     for (std::size_t k = 0; k < out.size(); ++k) {
@@ -273,7 +274,7 @@ class PatchTable {
         add(out[k], mesh.triangles[node.triangle][c], l[Eigen::Index(c)]);
         const double bent = 4 * l[Eigen::Index(c)] * l[Eigen::Index(d)];
         if (bent == 0) continue;
-        for (const BendTable::Weight& w : bends.bends()[bends.of_triangle()[node.triangle][c]])
+        for (const MidEdgeTable::Weight& w : bends.edge_rows()[bends.of_triangle()[node.triangle][c]])
           add(out[k], w.vertex, bent * double(w.weight));
       }
     }

@@ -1,37 +1,39 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file The contact of a frictionless sphere with a body: its force, and its loads of second order in depth.
-/// Per tick.
+/// @file The contact of a frictionless sphere with a body: its force, and its loads of second order in depth. Per
+/// tick.
 ///
-/// | what                    | how                                                                                                      |
-/// |-------------------------|----------------------------------------------------------------------------------------------------------|
-/// | force across the normal | F h, h = (K w_t - s) / (1 + R_s K): where the slopes of sphere and body meet                             |
-/// | where it acts           | on the body at x_c = R_s h - w_t from the first touch: the middle of the near field                      |
-/// | what it has gone        | d less dG/dF, G = F (R_s h^2 + K x_c^2) / 2 + F s.x_c + F s.w_t / 2, of which the last is a body's that turns as a whole |
-/// | radial double force     | D = -nu/(1-nu) F (C_w F + k d_H): a patch's, less what a pressure that is tilted outwards takes of d_H   |
-/// | a body that stiffens    | D e, by the part of D with d_H: 8/3 D e / F, as that part is of power 5/3 in F and e in proportion to F  |
-/// | finite strain           | `ball_softening` (sphere_contact.hpp)                                                                    |
-/// | within the contact      | the surface slides outwards, `ball_spread` (contact_near.hpp)                                            |
+/// | what                    | how                                                                               |
+/// |-------------------------|-----------------------------------------------------------------------------------|
+/// | force across the normal | F h, h = (K w_t - s) / (1 + R_s K): where the slopes of sphere and body meet      |
+/// | where it acts           | on the body at x_c = R_s h - w_t from the first touch: the middle of the near field |
+/// | displacement            | d less dG/dF, G = F (R_s h^2 + K x_c^2) / 2 + F s.x_c + F s.w_t / 2; the last term is that of a body that rotates as a whole |
+/// | radial force dipole     | D = -nu/(1-nu) F (C_w F + k d_H): a patch's, less what a pressure that is tilted outwards takes of d_H |
+/// | a body that stiffens    | D e, by the part of D with d_H: 8/3 D e / F, as that part is of power 5/3 in F and e in proportion to F |
+/// | finite strain           | `sphere_softening` (sphere_contact.hpp)                                           |
+/// | within the contact      | the surface slides outwards, `sphere_spread` (near_field.hpp)                     |
 ///
-/// | symbol | name                                                                                              | unit |
-/// |--------|---------------------------------------------------------------------------------------------------|------|
-/// | R_s    | radius of the sphere                                                                              | m    |
-/// | K      | half of k1 + k2, the surface's curvatures                                                         | 1/m  |
-/// | w, w_t | what the body adds to the half-space's displacement, w_t along the surface; s: the slope of w_n   | m    |
-/// | e      | strain of the surface by w                                                                        | -    |
+/// | symbol | name                                                                                          | unit |
+/// |--------|-----------------------------------------------------------------------------------------------|------|
+/// | R_s    | radius of the sphere                                                                          | m    |
+/// | K      | half of k1 + k2, the surface's curvatures                                                     | 1/m  |
+/// | w, w_t | regular part: displacement beyond the half-space's, and its part along the surface; s: slope of w_n | m |
+/// | e      | strain of the surface by w                                                                    | -    |
 ///
-/// d = d_H + C_w F: sphere_contact.hpp. Nothing is fitted but k, `ball_softening` and `ball_spread`. Far away
-/// D is all of second order that a half-space has. Bounds: docs/response_field.md.
+/// d = d_H + C_w F: sphere_contact.hpp. Only k, `sphere_softening` and `sphere_spread` are fitted (second_order.hpp).
+/// Far away D is all of second order that a half-space has. Bounds: constants.hpp.
 
-#include <palpate/response/tick/contact_loads.hpp>
+#include <palpate/response/tick/second_order_loads.hpp>
 #include <palpate/response/tick/sphere_contact.hpp>
+
+#include <Eigen/LU>
 
 namespace palpate {
 
 /// What a sphere that is pressed into a body feels; `force` and `stiffness` are along the normal.
 struct PressedSphere : SphereForce<double> {
-  /// Tangential force on the body [N], 1 to 5 % of `force` where the body leans.
+  /// Tangential force on the body [N], 1 to 5 % of `force` where the body slopes.
   Vec3<double> across = Vec3<double>::Zero();
 
   /// Force that the sphere exerts on the body [N]; `normal`: the contact's, outward, unit.
@@ -44,79 +46,141 @@ struct PressedSphere : SphereForce<double> {
 
 namespace palpate::detail {
 
-/// Sets P and the loads of `c`, which knows its place, normal, way and sphere. `curvature`: k1 + k2 of the
-/// surface.
-template <class Contacts>
-PressedSphere press_sphere(const ResponseField& field, const Contacts& contacts, PlacedContact& c,
-                           double curvature) noexcept {
-  const SecondOrder* const k = contacts.second_order();
-  const double nu = field.nu(), mu = field.shear_modulus(), modulus = field.E() / (1 - nu * nu);
-  const double depth = c.d.dot(c.m), bent = 0.5 * curvature,
-               R = 1 / (std::max)(1 / c.ball + bent, 1e-3 / c.ball);
-  const auto cube = [](double x) { return x * x * x; };
-  const double less = 1 - std::clamp(cube(R / c.ball) + cube(R * bent), 0.0, 1.0);
-  const double softening = k != nullptr ? k->ball_softening * R / c.ball : 0;
-  SphereForce<double> out{0, 0, std::sqrt(0.5 * R * (std::min)(depth, R))};
-  c.first = c.x;
-  Vec3<double> aside = Vec3<double>::Zero(), radial = aside;  // x_c; MovedByLoads
-  double local = depth, lifted = 0, stiffer = 0;              // d_H; taken from d, from C_w mu
-  constexpr int passes = 3;                                   // what the others ask of each other is small
-  for (int pass = 1; pass <= passes; ++pass) {
-    c.a = out.radius;
-    contacts.locate(c);
-    const double own = c.m.dot(c.w * c.m);
-    out = sphere_force(depth - lifted, R, modulus, (own - stiffer) / mu, less, softening);
-    const double P = out.force / mu;
-    c.P = P * c.m;
-    if (k == nullptr) continue;
-    const MovedByLoads moved(field, c);
-    // What the force across does to w_t and s counts: lean = leaning (m + lean), of a matrix that is held at
-    // a half. A body that bends easily would else be thrown aside.
-    Mat3<double> leaning = R / c.ball * P * (bent * c.w - moved.tilting);
-    leaning -= c.m * (c.m.transpose() * leaning);
-    leaning *= smooth_limit(leaning.squaredNorm(), 0.25);
-    Vec3<double> lean = (Mat3<double>::Identity() - leaning).inverse() * (leaning * c.m);
-    lean *= smooth_limit(lean.squaredNorm(), 0.0625);
-    c.P += P * lean;
-    const Vec3<double> slid = tangential(Vec3<double>(c.w * c.P), c.m),
-                       slope = tangential(Vec3<double>(moved.tilting * c.P), c.m);
-    aside = c.ball * lean - slid;
-    aside *= smooth_limit(aside.squaredNorm(), 0.25 * c.a * c.a);
-    radial = moved.radial;
-    local = depth - std::clamp(P * own, -depth, depth);  // held as it is in sphere_contact.hpp
-    if (pass == passes) break;
-    lifted = 0.5 * (c.ball * lean.squaredNorm() + bent * aside.squaredNorm()) + lean.dot(slid) +
-             2 * slope.dot(aside) + 1.5 * slope.dot(slid);
-    lifted *= smooth_limit(lifted * lifted, 0.01 * depth * depth);
-    const double most = 0.25 * flat_punch_compliance(c.a, nu).normal;
-    stiffer = 8.0 / 3 * k->ball_pull * outward(nu) * local * radial.dot(c.m);
-    stiffer *= smooth_limit(stiffer * stiffer, most * most);
+/// The gap between sphere and body.
+struct SphereShape {
+  double depth;      ///< of the sphere [m]
+  double curvature;  ///< K [1/m]
+  double R;          ///< radius of the relative curvature [m]
+  double less;       ///< g of sphere_contact.hpp
+  double softening;  ///< by finite strain
+
+  SphereShape(const Indenter& tool, double sum_of_curvatures, const SecondOrder* k) noexcept
+      : depth(tool.d.dot(tool.m)),
+        curvature(0.5 * sum_of_curvatures),
+        R(1 / (std::max)(1 / tool.sphere + curvature, tick::min_relative_curvature / tool.sphere)),
+        less(1 - std::clamp(cube(R / tool.sphere) + cube(R * curvature), 0.0, 1.0)),
+        softening(k != nullptr ? k->sphere_softening * R / tool.sphere : 0) {}
+
+ private:
+  [[nodiscard]] static double cube(double x) noexcept { return x * x * x; }
+};
+
+/// Force of a sphere and where it acts.
+struct SphereSolution {
+  SphereForce<double> felt;
+  double a = 0;                                ///< radius of the contact [m]
+  Vec3<double> P = Vec3<double>::Zero();       ///< force / mu
+  Vec3<double> shift = Vec3<double>::Zero();   ///< x_c [m]
+  Vec3<double> radial = Vec3<double>::Zero();  ///< MovedByLoads
+  double indentation = 0;                      ///< d_H [m]
+};
+
+/// The force across the normal and what follows from it, of a sphere with the force P along the normal.
+struct SphereAcross {
+  Vec3<double> h, slid, slope;  ///< h; w_t [m]; s
+
+  SphereAcross(const Indenter& tool, const SphereShape& shape, const PlacedContact& c,
+               const MovedByLoads& moved, double P) noexcept {
+    // h = A (m + h): what the force across does to w_t and s counts. A body that bends easily would be thrown aside
+    // if the norm of A were not at most a half.
+    Mat3<double> A = shape.R / tool.sphere * P * (shape.curvature * c.w - moved.couple);
+    A -= tool.m * (tool.m.transpose() * A);
+    A *= smooth_limit(A.squaredNorm(), tick::max_lean_feedback2);
+    h = (Mat3<double>::Identity() - A).inverse() * (A * tool.m);
+    h *= smooth_limit(h.squaredNorm(), tick::max_lean2);
+    const Vec3<double> force = P * tool.m + P * h;
+    slid = tangential(Vec3<double>(c.w * force), tool.m);
+    slope = tangential(Vec3<double>(moved.couple * force), tool.m);
   }
-  c.a = (std::max)(out.radius, 1e-9);
-  if (k == nullptr) return {out, Vec3<double>::Zero()};
-  c.x = c.first + aside;
-  const double dipole = -outward(nu) * (out.force / mu) * (depth - local + k->ball_pull * local);
-  c.kept = kept(radial.norm() * std::abs(dipole), c);
-  c.dipole = c.kept * dipole;
-  c.spread = c.kept * k->ball_spread * local / R;
-  return {out, mu * tangential(c.P, c.m)};
+};
+
+/// dG/dF: what moves of the contact takes from the depth [m].
+[[nodiscard]] inline double sphere_lift(const Indenter& tool, const SphereShape& shape,
+                                        const SphereAcross& across, const Vec3<double>& shift) noexcept {
+  const double lift = 0.5 * (tool.sphere * across.h.squaredNorm() + shape.curvature * shift.squaredNorm()) +
+                      across.h.dot(across.slid) + 2 * across.slope.dot(shift) +
+                      1.5 * across.slope.dot(across.slid);
+  return lift * smooth_limit(lift * lift, tick::max_lift2 * shape.depth * shape.depth);
 }
 
-/// Within the contact the surface lies on the sphere; beside it, not inside. at: an undeformed place; u: its
-/// displacement, changed along m by less than 0.4 d: what is farther off is another side of the body. reach:
-/// where that ends, from the contact's rim.
-inline void rest_on_ball(const PlacedContact& c, const Vec3<double>& at, double reach,
-                         Vec3<double>& u) noexcept {
+/// Compliance / mu that a body loses that spreads under the contact, 8/3 k nu/(1-nu) d_H e / F [1/m]. `near`:
+/// the half-space's compliance.
+[[nodiscard]] inline double sphere_stiffening(const SecondOrder& k, double nu, double near,
+                                              double indentation, double strain) noexcept {
+  const double max = tick::max_stiffening * near,
+               stiffer = 8.0 / 3 * k.sphere_dipole * dipole_ratio(nu) * indentation * strain;
+  return stiffer * smooth_limit(stiffer * stiffer, max * max);
+}
+
+/// Force and place of a sphere's contact, by passes of which each knows what the one before gave: the radius, what is
+/// taken from depth and compliance. The placed stage is made in `placed`, for the radius of the last pass but one.
+[[nodiscard]] inline SphereSolution solve_sphere_contact(const ResponseField& field, const SecondOrder* k,
+                                                         const Indenter& sphere, const SphereShape& shape,
+                                                         PlacedContact& placed) noexcept {
+  const double nu = field.nu(), mu = field.shear_modulus(), modulus = field.E() / (1 - nu * nu);
+  const PatchMoments none;
+  Indenter tool = sphere;
+  SphereSolution out;
+  out.felt = {0, 0, std::sqrt(0.5 * shape.R * (std::min)(shape.depth, shape.R))};
+  out.indentation = shape.depth;
+  double lift = 0, stiffening = 0;
+  for (int pass = 1; pass <= tick::sphere_passes; ++pass) {
+    tool.a = out.felt.radius;
+    construct(placed, [&] { return place_contact(field, tool); });
+    const double own = tool.m.dot(placed.w * tool.m);
+    out.felt = sphere_force(shape.depth - lift, shape.R, modulus, (own - stiffening) / mu, shape.less,
+                            shape.softening);
+    const double P = out.felt.force / mu;
+    out.P = P * tool.m;
+    if (k == nullptr) continue;
+    const MovedByLoads moved(field, placed, none);
+    const SphereAcross across(tool, shape, placed, moved, P);
+    out.P += P * across.h;
+    out.shift = tool.sphere * across.h - across.slid;
+    out.shift *= smooth_limit(out.shift.squaredNorm(), tick::max_center_shift2 * tool.a * tool.a);
+    out.radial = moved.radial;
+    out.indentation = shape.depth - std::clamp(P * own, -shape.depth, shape.depth);
+    if (pass == tick::sphere_passes) break;
+    lift = sphere_lift(tool, shape, across, out.shift);
+    stiffening = sphere_stiffening(*k, nu, placed.near.normal, out.indentation, out.radial.dot(tool.m));
+  }
+  out.a = (std::max)(out.felt.radius, 1e-9);  // [m]: the smallest radius that a contact may have (is_usable)
+  return out;
+}
+
+/// The second order stage of a sphere: its dipole and the spread within the contact.
+[[nodiscard]] inline SecondOrderContact sphere_loads(const SecondOrder* k, const ResponseField& field,
+                                                     const Indenter& tool, const SphereShape& shape,
+                                                     const SphereSolution& sphere) noexcept {
+  const Vec3<double> zero = Vec3<double>::Zero();
+  SecondOrderContact out{0, zero, zero, zero, 0, NearTerms::none(), zero};
+  if (k == nullptr) return out;
+  const double P = sphere.felt.force / field.shear_modulus(), local = sphere.indentation,
+               dipole = -dipole_ratio(field.nu()) * P * (shape.depth - local + k->sphere_dipole * local);
+  out.share = series_share(sphere.radial.norm() * std::abs(dipole), tool.displacement2());
+  out.dipole = out.share * dipole;
+  out.near.spread = out.share * k->sphere_spread * local / shape.R;
+  return out;
+}
+
+/// Within the contact the surface lies on the sphere; beside it, not inside. `at`: an undeformed position; u: its
+/// displacement, changed along m by less than 0.4 d: what is farther off is another side of the body. `reach`: where
+/// that ends, from the contact's rim [m].
+inline void rest_on_sphere(const DrawnContact& c, const Vec3<double>& at, double reach,
+                           Vec3<double>& u) noexcept {
+  const Indenter& tool = c.tool;
   const Vec3<double> moved = at + u - c.first;
-  const double depth = c.d.dot(c.m), rest = c.ball * c.ball - tangential(moved, c.m).squaredNorm();
+  const double depth = tool.d.dot(tool.m),
+               rest = tool.sphere * tool.sphere - tangential(moved, tool.m).squaredNorm();
   if (!(rest > 0)) return;
-  const double inside = depth - c.ball + std::sqrt(rest) - moved.dot(c.m), off = inside / depth,
-               r = (at - c.x).norm();
-  // What is inside is moved out, to a radius from the rim or `reach`; what lies below is drawn up, towards
-  // the rim less and less.
-  const double share = inside > 0 ? 2 - 2 * (r - c.a) / (std::min)(c.a, reach) : 10 * (1 - r / c.a);
-  u += std::clamp(share, 0.0, 1.0) * (std::min)(4 * rest / (c.ball * c.ball), 1.0) *
-       (std::max)(1 - off * off, 0.0) * inside * c.m;
+  const double inside = depth - tool.sphere + std::sqrt(rest) - moved.dot(tool.m), off = inside / depth,
+               r = (at - tool.x).norm();
+  // What is inside is moved out, wholly up to half a radius from the rim, no more from a radius or `reach` on; what
+  // lies below is drawn up, towards the rim less and less over a tenth of the radius.
+  const double share = inside > 0 ? 2 - 2 * (r - tool.a) / (std::min)(tool.a, reach) : 10 * (1 - r / tool.a);
+  // Near the sphere's equator, from a quarter of R_s^2 down, and off by d, nothing is moved.
+  u += std::clamp(share, 0.0, 1.0) * (std::min)(4 * rest / (tool.sphere * tool.sphere), 1.0) *
+       (std::max)(1 - off * off, 0.0) * inside * tool.m;
 }
 
 }  // namespace palpate::detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <palpate/response/tick/turned_field.hpp>
+#include <palpate/response/tick/rotation_correction.hpp>
 
 #include "support/check.hpp"
 #include "support/response_meshes.hpp"
@@ -28,21 +28,25 @@ V at(const ResponseField& field, const std::vector<float>& u, std::size_t v) {
   return V(double(u[v]), double(u[n + v]), double(u[2 * n + v]));
 }
 const V far_away(1, 1, 1);
-// One at `first`, one out of reach.
-detail::ContactSystem<2> contacts(const ResponseField& field, const V& first = far_away) {
-  detail::ContactSystem<2> out(field, {});
-  out[0].x = first, out[1].x = far_away;
-  out[0].a = out[1].a = 0.01;
-  return out;
-}
+// One at `first`, one out of reach; `count` of them.
+struct Contacts {
+  std::array<detail::DrawnContact, 2> drawn{};
+  explicit Contacts(const V& first) {
+    drawn[0].near.x = first.cast<float>(), drawn[1].near.x = far_away.cast<float>();
+    drawn[0].tool.a = drawn[1].tool.a = 0.01;
+  }
+  [[nodiscard]] std::span<const detail::DrawnContact> operator()(std::size_t count) const {
+    return {drawn.data(), count};
+  }
+};
 }  // namespace
 
 TEST_CASE("a body that turns as a whole moves along a circle; on edges and corners, too") {
   const ResponseField& field = cube();
   const std::size_t n = field.stride();
-  detail::TurnedField<2> turned(field);
+  detail::RotationCorrection<2> correction(field);
   SecondOrder all;
-  all.turned = 1;
+  all.rotated = 1;
   const std::vector<float> none(6 * n, 0.f);
   const V pivot(0.02, 0.01, 0.07);
   for (const V& axis : {V(1, 0, 0), V(0, 1, 0), V(0.6, 0, 0.8)}) {
@@ -50,7 +54,8 @@ TEST_CASE("a body that turns as a whole moves along a circle; on edges and corne
     const Mat3<double> turn = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
     const auto linear = at_vertices(field, [&](const V& x) -> V { return angle * axis.cross(V(x - pivot)); });
     std::vector<float> q(3 * n);
-    const double largest = double(turned.find(linear.data(), none.data(), contacts(field), 1, all, q.data()));
+    const double largest =
+        double(correction.find(linear.data(), none.data(), Contacts(far_away)(1), all, q.data()));
     double largest_seen = 0;
     for (std::size_t v = 0; v < field.mesh().vertices.size(); ++v) {
       const V x = field.mesh().vertices[v] - pivot, u = at(field, linear, v), second = at(field, q, v);
@@ -72,7 +77,7 @@ TEST_CASE("a body that turns as a whole moves along a circle; on edges and corne
 TEST_CASE("a translation turns nothing, nor does a near field alone; on its patch nothing is added") {
   const ResponseField& field = cube();
   const std::size_t n = field.stride();
-  detail::TurnedField<2> turned(field);
+  detail::RotationCorrection<2> correction(field);
   std::vector<float> q(3 * n);
   const auto size = [&] {
     double most = 0;
@@ -81,7 +86,7 @@ TEST_CASE("a translation turns nothing, nor does a near field alone; on its patc
   };
   const std::vector<float> none(6 * n, 0.f);
   const auto moved = at_vertices(field, [](const V&) { return V(1, 2, 3); });
-  turned.find(moved.data(), none.data(), contacts(field), 1, {}, q.data());
+  correction.find(moved.data(), none.data(), Contacts(far_away)(1), {}, q.data());
   CHECK(size() < 1e-4);  // roundings of 3 m in float, over edges of 1 cm, times 3 m: 2e-5 met
 
   const auto bump = [](const V& x) -> V {
@@ -90,13 +95,13 @@ TEST_CASE("a translation turns nothing, nor does a near field alone; on its patc
   const auto alone = at_vertices(field, bump);
   std::vector<float> near(6 * n, 0.f);
   std::copy(alone.begin(), alone.end(), near.begin());
-  turned.find(alone.data(), near.data(), contacts(field), 1, {}, q.data());
+  correction.find(alone.data(), near.data(), Contacts(far_away)(1), {}, q.data());
   CHECK(size() == 0);
   // Not so with another contact's.
   const auto other = at_vertices(field, [&](const V& x) { return bump(V(x.z(), x.y(), x.x() + 0.03)); });
   std::vector<float> both = alone;
   for (std::size_t i = 0; i < 3 * n; ++i) near[3 * n + i] = other[i], both[i] += other[i];
-  turned.find(both.data(), near.data(), contacts(field), 2, {}, q.data());
+  correction.find(both.data(), near.data(), Contacts(far_away)(2), {}, q.data());
   CHECK(size() > 1e-6);
 
   // A patch that holds a vertex, and half of what is beyond it.
@@ -104,16 +109,16 @@ TEST_CASE("a translation turns nothing, nor does a near field alone; on its patc
   std::size_t v = 0;
   while (field.mesh().fixed_vertex[v]) ++v;
   const V& x = field.mesh().vertices[v];
-  turned.find(whole.data(), none.data(), contacts(field), 1, {}, q.data());
+  correction.find(whole.data(), none.data(), Contacts(far_away)(1), {}, q.data());
   const V free = at(field, q, v);
   CHECK(free.norm() > 1e-5);  // 4e-5: what follows tells it from nothing
-  turned.find(whole.data(), none.data(), contacts(field, x + V(0.0099, 0, 0)), 1, {}, q.data());
+  correction.find(whole.data(), none.data(), Contacts(x + V(0.0099, 0, 0))(1), {}, q.data());
   CHECK(at(field, q, v) == V::Zero());
-  auto let_go = contacts(field, x);
-  let_go[0].grip = 0;
-  turned.find(whole.data(), none.data(), let_go, 1, {}, q.data());
+  Contacts inactive(x);
+  inactive.drawn[0].near.activation = 0;
+  correction.find(whole.data(), none.data(), inactive(1), {}, q.data());
   CHECK(at(field, q, v) == free);
-  turned.find(whole.data(), none.data(), contacts(field, x + V(0, 0.0125, 0)), 1, {}, q.data());
+  correction.find(whole.data(), none.data(), Contacts(x + V(0, 0.0125, 0))(1), {}, q.data());
   CHECK((at(field, q, v) - 0.5 * free).norm() <
         1e-5 * free.norm());  // places of 0.1 m in float, over 1 cm: 2e-7 met
 }

@@ -15,39 +15,41 @@ SolveMesh cube() {
     fixed.push_back(mesh.vertices[t[0]].y() + mesh.vertices[t[1]].y() + mesh.vertices[t[2]].y() < 1e-9);
   return make_solve_mesh(SmoothSurface(mesh), fixed, {.vertices = 300});
 }
-detail::ContactNear contact_at(const V& place) {
-  detail::ContactNear near{};
-  near.place = place.cast<float>();
+detail::DrawnContact contact_at(const V& position) {
+  detail::DrawnContact contact{};
+  detail::NearField& near = contact.near;
+  near.x = position.cast<float>();
   near.m = Vec3<float>(0, -1, 0);
-  near.along = near.tilt = near.turn = near.push = Vec3<float>::Zero();
+  near.along = near.couple = near.slope = near.push = Vec3<float>::Zero();
   near.shear.setZero();
   near.a = 0.005f;
-  return near;
+  return contact;
 }
+std::array<detail::DrawnContact, 1> list(const detail::DrawnContact& contact) { return {contact}; }
 // A quadratic field at the mesh's vertices.
 V u(const V& x) { return V(x.x() * x.x() + x.z(), 2 * x.x() * x.z(), 0.1 - x.z() * x.z()); }
 }  // namespace
 
 TEST_CASE("a quadratic field is drawn exactly on a face, near a contact; far from it, as ever") {
   const SolveMesh mesh = cube();
-  const BendTable table(mesh, detail::EdgeBend(mesh));
+  const MidEdgeTable table(mesh, detail::EdgeBend(mesh));
   const std::size_t n = ResponseField::padded(mesh.vertices.size());
   std::vector<float> field(3 * n, 0.f);
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     for (std::size_t i = 0; i < 3; ++i) field[i * n + v] = float(u(mesh.vertices[v])[Eigen::Index(i)]);
   const std::vector<float> none(3 * n, 0.f);  // a contact without a force
-  detail::BentEdges<1> bent(table, n);
+  detail::MidEdgeCorrection<1> bent(table, n);
   const float reach = 0.06f;
   std::size_t checked = 0;
   for (const V& place :
        {V(0.03, 0.1, 0.03), V(0.07, 0.1, 0.06)}) {  // the second: nothing is left of the first
-    bent.read(field.data(), none.data(), n, {contact_at(place)}, 1, reach);
+    bent.read(field.data(), none.data(), n, list(contact_at(place)), reach);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const auto& c = mesh.triangles[t];
       const V &p = mesh.vertices[c[0]], &q = mesh.vertices[c[1]], &r = mesh.vertices[c[2]];
       const V middle = (p + q + r) / 3;
       const double away = (middle - place).norm();
-      detail::BentEdges<1>::OfTriangle bend{};
+      detail::MidEdgeCorrection<1>::OfTriangle bend{};
       const bool any = bent.find(t, bend);
       if (away > reach + 0.005 + 0.02) CHECK(!any);
       if (away > 0.6 * reach || std::min({p.y(), q.y(), r.y()}) < 0.1 - 1e-9) continue;
@@ -68,7 +70,7 @@ TEST_CASE("a quadratic field is drawn exactly on a face, near a contact; far fro
 TEST_CASE(
     "far from a contact a quadratic field is drawn linearly, right in the mean; near it, vertices stay") {
   const SolveMesh mesh = cube();
-  const BendTable table(mesh, detail::EdgeBend(mesh));
+  const MidEdgeTable table(mesh, detail::EdgeBend(mesh));
   const auto bulge = [](const V& x) {
     return V(x.x() * x.x() + x.z(), x.squaredNorm(), 0.1 - x.z() * x.z());
   };
@@ -80,10 +82,10 @@ TEST_CASE(
       field[4 * v + i] = float(bulge(mesh.vertices[v])[Eigen::Index(i)]);
     }
   const std::array<const float*, 3> vertices{place.data(), &place[n], &place[2 * n]};
-  const detail::BentEdges<1> bent(table, n);
+  const detail::MidEdgeCorrection<1> bent(table, n);
   std::vector<float> raised(field.size(), 0.f);
 
-  bent.raise(vertices, field.data(), {contact_at(V(1, 1, 1))}, 1, 0.06f, 1e3f, raised.data());
+  bent.raise(vertices, field.data(), list(contact_at(V(1, 1, 1))), 0.06f, 1e3f, raised.data());
   V sum = V::Zero(), linear_sum = V::Zero(), square = V::Zero(), linear_square = V::Zero();
   std::size_t checked = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -116,7 +118,7 @@ TEST_CASE(
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     if (mesh.fixed_vertex[v]) CHECK(raised[4 * v + 1] == field[4 * v + 1]);
 
-  bent.raise(vertices, field.data(), {contact_at(V(0.05, 0.1, 0.05))}, 1, 1.f, 1e3f, raised.data());
+  bent.raise(vertices, field.data(), list(contact_at(V(0.05, 0.1, 0.05))), 1.f, 1e3f, raised.data());
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     for (std::size_t i = 0; i < 3; ++i) CHECK(raised[4 * v + i] == field[4 * v + i]);
 
@@ -124,7 +126,7 @@ TEST_CASE(
   std::vector<float> wild(field.size());
   for (std::size_t i = 0; i < wild.size(); ++i) wild[i] = i % 7 == 0 ? 100.f : -100.f;
   for (const float most : {0.02f, 0.f}) {
-    bent.raise(vertices, wild.data(), {contact_at(V(1, 1, 1))}, 1, 0.06f, most, raised.data());
+    bent.raise(vertices, wild.data(), list(contact_at(V(1, 1, 1))), 0.06f, most, raised.data());
     for (std::size_t i = 0; i < 4 * mesh.vertices.size(); ++i)
       CHECK(std::abs(raised[i] - wild[i]) <= 0.5f * most + 1e-4f);  // rounding of 100 in float
   }
@@ -132,13 +134,13 @@ TEST_CASE(
 
 TEST_CASE("near fields are drawn by their values at the middles of edges, a contact's own and all of them") {
   const SolveMesh mesh = cube();
-  const BendTable table(mesh, detail::EdgeBend(mesh));
+  const MidEdgeTable table(mesh, detail::EdgeBend(mesh));
   const std::size_t n = ResponseField::padded(mesh.vertices.size());
-  std::array<detail::ContactNear, 2> contact{contact_at(V(0.03, 0.1, 0.03)), contact_at(V(0.07, 0.1, 0.06))};
-  contact[0].normal = 1, contact[1].normal = 0.5f;
+  std::array<detail::DrawnContact, 2> contact{contact_at(V(0.03, 0.1, 0.03)), contact_at(V(0.07, 0.1, 0.06))};
+  contact[0].near.normal = 1, contact[1].near.normal = 0.5f;
   const auto near = [&contact](std::size_t c, const V& x) {
     const auto at = [&x](int axis) { return detail::four(float(x[axis])); };
-    const detail::Lane3 u = contact[c](detail::Lane3{at(0), at(1), at(2)});
+    const detail::Lane3 u = contact[c].near(detail::Lane3{at(0), at(1), at(2)});
     return V(u.x[0], u.y[0], u.z[0]);
   };
   std::vector<float> total(3 * n, 0.f), own(2 * 3 * n, 0.f);  // nothing but near fields
@@ -148,21 +150,21 @@ TEST_CASE("near fields are drawn by their values at the middles of edges, a cont
         own[(3 * c + i) * n + v] = float(near(c, mesh.vertices[v])[Eigen::Index(i)]);
         total[i * n + v] += own[(3 * c + i) * n + v];
       }
-  detail::BentEdges<2> bent(table, n);
-  bent.read(total.data(), own.data(), n, contact, 2, 0.06f);
+  detail::MidEdgeCorrection<2> bent(table, n);
+  bent.read(total.data(), own.data(), n, contact, 0.06f);
   std::size_t checked = 0;
   double linear_error = 0, bent_error = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& k = mesh.triangles[t];
     const V &p = mesh.vertices[k[0]], &q = mesh.vertices[k[1]], &r = mesh.vertices[k[2]];
     if (std::min({p.y(), q.y(), r.y()}) < 0.1 - 1e-9) continue;
-    detail::BentEdges<2>::OfTriangle all{}, part{};
+    detail::MidEdgeCorrection<2>::OfTriangle all{}, part{};
     V apart = V::Zero();
     const detail::Lane third = detail::four(1.f / 3), half = detail::four(0.5f);
     const auto value = [](const detail::Lane3& u) { return V(u.x[0], u.y[0], u.z[0]); };
     for (std::size_t c = 0; c < 2; ++c) {
       const V middle = (p + q + r) / 3;
-      const double away = (middle - contact[c].place.cast<double>()).norm();
+      const double away = (middle - contact[c].near.x.cast<double>()).norm();
       if (!bent.find_near(c, t, part)) {
         CHECK(away > 0.045);
         continue;
@@ -188,7 +190,7 @@ TEST_CASE("near fields are drawn by their values at the middles of edges, a cont
   const auto drawn = [&bent, &mesh] {
     std::vector<float> out;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      detail::BentEdges<2>::OfTriangle bend{};
+      detail::MidEdgeCorrection<2>::OfTriangle bend{};
       if (bent.find(t, bend))
         for (const detail::Lane& edge : bend.edge) out.insert(out.end(), {edge[0], edge[1], edge[2]});
     }
@@ -196,8 +198,9 @@ TEST_CASE("near fields are drawn by their values at the middles of edges, a cont
   };
   const std::vector<float> first = drawn();
   for (double x = 0.01; x < 0.1; x += 0.007)
-    bent.read(total.data(), own.data(), n, {contact_at(V(x, 0.1, x)), contact_at(V(0.1, x, 0.05))}, 2, 0.06f);
+    bent.read(total.data(), own.data(), n, std::array{contact_at(V(x, 0.1, x)), contact_at(V(0.1, x, 0.05))},
+              0.06f);
   CHECK(drawn() != first);
-  bent.read(total.data(), own.data(), n, contact, 2, 0.06f);
+  bent.read(total.data(), own.data(), n, contact, 0.06f);
   CHECK(drawn() == first);
 }

@@ -1,38 +1,40 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Second order in depth where the body turns: what turns with it moves along a circle, not along the
+/// @file Second order in depth where the body rotates: what rotates with it moves along a circle, not along the
 /// tangent. Per tick.
 ///
 ///     q = 1/2 f (k_t omega(w) x w + k_c (omega(w) x n + omega(n) x w + sum omega(n_i) x n_j)) ,   i != j
 ///
-/// | symbol   | name                                                                          | unit |
-/// |----------|-------------------------------------------------------------------------------|------|
-/// | n, n_i   | near fields of the contacts, of one; w the rest of the field                  | m    |
-/// | omega(u) | rotation (rotation_table.hpp)                                                 | rad  |
-/// | f        | 0 on a patch that grips, 1 from one and a half radii on                       | -    |
-/// | k_t, k_c | `SecondOrder::turned`, `crossed`; a body that turns as a whole has k_t = 1    | -    |
+/// | symbol   | name                                                                             | unit |
+/// |----------|----------------------------------------------------------------------------------|------|
+/// | n, n_i   | near fields of all contacts, of one; w: the rest of the field                    | m    |
+/// | omega(u) | rotation of the field u (rotation_table.hpp)                                     | rad  |
+/// | f        | 0 on the patch of an active contact, 1 from one and a half radii on              | -    |
+/// | k_t, k_c | `SecondOrder::rotated`, `crossed`; a body that rotates as a whole has k_t = 1    | -    |
 ///
-/// What a contact's near field does with itself is in its own terms of second order, fitted on a half-space
-/// (contact_near.hpp).
+/// What a contact's near field does with itself is in its own terms of second order (near_field.hpp).
 
-#include <palpate/response/tick/contact_system.hpp>
+#include <palpate/response/second_order.hpp>
+#include <palpate/response/tick/stages.hpp>
+
+#include <span>
 
 namespace palpate::detail {
 
 /// Holds the buffers; the field must outlive it.
 template <std::size_t Capacity>
-class TurnedField {
+class RotationCorrection {
  public:
-  explicit TurnedField(const ResponseField& field)
+  explicit RotationCorrection(const ResponseField& field)
       : field_(&field), fields_(numbers(Capacity) * field.stride()) {}
 
-  /// q at the solve mesh's vertices to `out`, by coordinate, from the field `total` and the near fields of
-  /// `count` contacts, one after the other, likewise. Returns the largest q^2.
-  float find(const float* total, const float* near, const ContactSystem<Capacity>& contact, std::size_t count,
+  /// q at the mesh's vertices to `out`, by coordinate, from the field `total` and the near fields of the contacts, one
+  /// after the other, likewise. Returns the largest q^2 [m^2].
+  float find(const float* total, const float* near, std::span<const DrawnContact> contacts,
              const SecondOrder& constants, float* out) noexcept {
-    const std::size_t n = field_->stride(), step = numbers(count);
-    const auto turned = static_cast<float>(0.5 * constants.turned),
+    const std::size_t n = field_->stride(), count = contacts.size(), step = numbers(count);
+    const auto rotated = static_cast<float>(0.5 * constants.rotated),
                crossed = static_cast<float>(0.5 * constants.crossed);
     const auto own = [this, near, n](std::size_t c, std::size_t v) { return from(near + 3 * n * c + v); };
     for (std::size_t v = 0; v < n; v += lane_size) {
@@ -45,26 +47,26 @@ class TurnedField {
       }
       store_by_fours(to, w.x, w.y, w.z, step);
     }
-    Lane most{};
+    Lane max{};
     for (std::size_t v = 0; v < n; v += lane_size) {
       const Lane3 u = from(total + v);
       Lane3 all{}, q{};
       Lane share = four(1);
-      Turning turning(*this, v, step);
+      Rotations omega(*this, v, step);
       for (std::size_t c = 0; c < count; ++c) {
         const Lane3 near_c = own(c, v);
         all += near_c;
-        share *= beyond(contact[c], v);
-        q += cross(turning(c + 1), crossed * (u - near_c));
+        share *= outside(contacts[c], v);
+        q += cross(omega(c + 1), crossed * (u - near_c));
       }
-      q += cross(turning(0), turned * (u - all) + crossed * all);
+      q += cross(omega(0), rotated * (u - all) + crossed * all);
       q = share * q;
-      most = larger(most, dot(q, q));
+      max = larger(max, dot(q, q));
       store_vector(out + v, q.x);
       store_vector(out + n + v, q.y);
       store_vector(out + 2 * n + v, q.z);
     }
-    return -least_of(-most);
+    return -least_of(-max);
   }
 
  private:
@@ -75,9 +77,9 @@ class TurnedField {
   }
 
   // The rotations of all fields at four vertices.
-  class Turning {
+  class Rotations {
    public:
-    Turning(const TurnedField& of, std::size_t v, std::size_t step) noexcept {
+    Rotations(const RotationCorrection& of, std::size_t v, std::size_t step) noexcept {
       const RotationTable& table = of.field_->rotation();
       for (std::size_t a = 0; a < 3; ++a)
         axis_[a] = {lane_at(table.frame(a, 0) + v), lane_at(table.frame(a, 1) + v),
@@ -122,13 +124,17 @@ class TurnedField {
   [[nodiscard]] PALPATE_INLINE Lane3 from(const float* at) const noexcept {
     return {lane_at(at), lane_at(at + field_->stride()), lane_at(at + 2 * field_->stride())};
   }
-  [[nodiscard]] PALPATE_INLINE Lane beyond(const PlacedContact& c, std::size_t v) const noexcept {
+  // f of one contact.
+  [[nodiscard]] PALPATE_INLINE Lane outside(const DrawnContact& c, std::size_t v) const noexcept {
+    constexpr double width = tick::rotation_to - tick::rotation_from;
     const auto away = [this, v, &c](int axis) -> Lane {
-      return lane_at(field_->coordinate(axis) + v) - static_cast<float>(c.x[axis]);
+      return lane_at(field_->coordinate(axis) + v) - c.near.x[axis];
     };
     const Lane3 r{away(0), away(1), away(2)};
-    const Lane within = between(Lane(3.f - root(dot(r, r)) * static_cast<float>(2 / c.a)), 0, 1);
-    return 1 - static_cast<float>(c.grip) * within;
+    const Lane within = between(Lane(static_cast<float>(tick::rotation_to / width) -
+                                     root(dot(r, r)) * static_cast<float>(1 / (width * c.tool.a))),
+                                0, 1);
+    return 1 - c.near.activation * within;
   }
 
   const ResponseField* field_;
