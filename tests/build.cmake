@@ -1,5 +1,5 @@
-# Tests of how the library builds: each header alone, all of it in two objects, flags of the host, policies that must
-# be refused, and the three ways of using it from another project. Label: build.
+# Tests of how the library builds: each header alone, all of it in two objects, flags of the host, policies
+# that must be refused, and the three ways of using it from another project. Label: build.
 
 get_property(tests_of_code DIRECTORY PROPERTY TESTS)
 
@@ -16,8 +16,12 @@ endforeach()
 set(generated ${CMAKE_CURRENT_BINARY_DIR}/generated)
 file(CONFIGURE OUTPUT ${generated}/all_headers.hpp CONTENT "#pragma once\n${include_all}" @ONLY)
 
-# Each header alone, in a file of its own. Force laws stay free of Eigen, which is most of a user's compile time.
-set(sources "")
+# Each header alone, in a file of its own, in two forms. The thorough form (tests/run --thorough) is the whole
+# check, with exceptions and without. Parsing Eigen again for each header was most of its time, so the usual
+# form has Eigen parsed already, and cannot see one mistake: a header that uses Eigen and does not include it.
+# Force laws stay free of Eigen, which is most of a user's compile time, and are checked without it in both
+# forms.
+set(header_sources "")
 set(adapter_libraries "")
 foreach(adapter IN LISTS adapters)
   get_filename_component(name ${adapter} NAME_WE)
@@ -29,18 +33,29 @@ endforeach()
 foreach(header IN LISTS headers)
   string(REGEX REPLACE "[/.]" "_" name ${header})
   set(text "#include <${header}>\n")
+  set(source ${generated}/${name}.cpp)
   if(header MATCHES "^palpate/law/force/")
     string(APPEND text "#ifdef EIGEN_WORLD_VERSION\n#error force laws do not include Eigen\n#endif\n")
+    set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
   endif()
-  file(CONFIGURE OUTPUT ${generated}/${name}.cpp CONTENT "${text}" @ONLY)
-  list(APPEND sources ${generated}/${name}.cpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT "${text}" @ONLY)
+  list(APPEND header_sources ${source})
 endforeach()
-# One compiler is enough: an include that is missing is missing for all, and this is a third of the build's time.
+function(palpate_headers_alone target)  # and flags
+  add_library(${target} OBJECT ${header_sources})
+  palpate_own_target(${target})
+  target_compile_options(${target} PRIVATE -O0 ${ARGN})
+  target_link_libraries(${target} PRIVATE ${adapter_libraries})
+endfunction()
+# One compiler is enough: an include that is missing is missing for all.
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  add_library(palpate_test_headers OBJECT ${sources})
-  palpate_own_target(palpate_test_headers)
-  target_compile_options(palpate_test_headers PRIVATE -O0)
-  target_link_libraries(palpate_test_headers PRIVATE ${adapter_libraries})
+  palpate_headers_alone(palpate_test_headers)
+  target_precompile_headers(palpate_test_headers PRIVATE <Eigen/Core> <Eigen/Geometry>)
+  palpate_headers_alone(palpate_test_headers_thorough)
+  palpate_headers_alone(palpate_test_headers_noexcept -fno-exceptions -fno-rtti)
+  add_custom_target(palpate_test_thorough DEPENDS palpate_test_headers_thorough palpate_test_headers_noexcept)
+  set_target_properties(palpate_test_headers_thorough palpate_test_headers_noexcept
+    PROPERTIES EXCLUDE_FROM_ALL ON)
 endif()
 
 # Two objects of one program.
@@ -116,7 +131,8 @@ endfunction()
 palpate_consumer_test(add_subdirectory -DPALPATE_SOURCE_DIR=${PROJECT_SOURCE_DIR})
 if(PALPATE_INSTALL)
   add_test(NAME install COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --prefix ${consumer}/prefix)
-  palpate_consumer_test(find_package -DCMAKE_PREFIX_PATH=${consumer}/prefix -DPALPATE_VERSION=${PROJECT_VERSION})
+  palpate_consumer_test(find_package
+    -DCMAKE_PREFIX_PATH=${consumer}/prefix -DPALPATE_VERSION=${PROJECT_VERSION})
   set_tests_properties(install PROPERTIES FIXTURES_SETUP install)
   set_tests_properties(consumer_find_package PROPERTIES FIXTURES_REQUIRED install)
 endif()
