@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // [readme]
-#include <cstdio>
 #include <palpate/palpate.hpp>
+
+#include <cstdio>
 using namespace palpate;
 
 int main() {

@@ -35,15 +35,31 @@ struct FollowNothing {
   void operator()(const Felt&, Solver&) const noexcept {}
 };
 
-/// The solver as the device calls it.
-template <class Solver, class Follow = FollowNothing>
-struct Feel {
-  Solver solver;
-  std::optional<palpate::SweptPose<S>> sweep{};    ///< holds the tool back; empty: never
-  std::optional<palpate::EnergyLimit<S>> limit{};  ///< for an object whose force is not passive by itself
-  Follow follow{};                                 ///< what the object does after a tick, for the next one
+/// What the device calls, whatever the object is: one virtual call a tick.
+class Feel {
+ public:
+  Feel() = default;
+  Feel(const Feel&) = delete;
+  Feel& operator=(const Feel&) = delete;
+  virtual ~Feel() = default;
+  virtual Felt tick(const palpate::Pose<S>& X, S dt) noexcept = 0;
+  virtual void reset() noexcept = 0;
+  [[nodiscard]] virtual std::size_t tool_points() const noexcept = 0;
+};
 
-  Felt tick(const palpate::Pose<S>& X, S dt) noexcept {
+/// A solver and what stands around it.
+template <class Solver, class Follow = FollowNothing>
+struct SolverFeel final : Feel {
+  Solver solver;
+  std::optional<palpate::SweptPose<S>> sweep;    ///< holds the tool back; empty: never
+  std::optional<palpate::EnergyLimit<S>> limit;  ///< for an object whose force is not passive by itself
+  Follow follow;                                 ///< what the object does after a tick, for the next one
+
+  SolverFeel(Solver at, std::optional<palpate::SweptPose<S>> swept,
+             std::optional<palpate::EnergyLimit<S>> limited = {}, Follow then = {})
+      : solver(std::move(at)), sweep(std::move(swept)), limit(std::move(limited)), follow(std::move(then)) {}
+
+  Felt tick(const palpate::Pose<S>& X, S dt) noexcept override {
     palpate::HeldPose<S> at{X, palpate::Status::ok};
     if (sweep) at = sweep->advance(solver.tool(), solver.object(), X);
     const palpate::TickResult<S> result = solver.tick(at.pose, dt);
@@ -61,11 +77,12 @@ struct Feel {
     follow(felt, solver);
     return felt;
   }
-  void reset() noexcept {
+  void reset() noexcept override {
     solver.reset();
     if (sweep) sweep->reset();
     if (limit) limit->reset();
   }
+  [[nodiscard]] std::size_t tool_points() const noexcept override { return solver.tool().size(); }
 };
 
 /// The example's solver over any body.

@@ -2,11 +2,15 @@
 #pragma once
 
 /// @file One scene played: felt on the device, its shape drawn beside the servo loop, and all of it written
-/// down.
+/// down. Templates hold only what needs the object's type.
 
-#include <palpate/calibrate/response_map.hpp>
 #include <palpate/geometry/mesh_surface.hpp>
 #include <palpate/geometry/sampled_surface.hpp>
+#include <palpate/law/map/duffing_map.hpp>
+
+#include <filesystem>
+#include <functional>
+#include <optional>
 
 #include "povray.hpp"
 #include "session.hpp"
@@ -14,7 +18,6 @@
 namespace touch {
 
 inline constexpr std::size_t display_vertices = 5000;  ///< of exact surfaces
-inline constexpr std::size_t most_frames = 36;
 
 /// Object, tool, script and parameters.
 template <class Body, class Coupling = palpate::IndependentRegions>
@@ -40,61 +43,54 @@ template <class Body>
   return {body, {.spacing = 0.01 * (body.upper() - body.lower()).norm()}};
 }
 
+/// A body as set-up asks it, its type forgotten.
+struct AnyBody {
+  using Scalar = S;
+
+  template <class Body>
+  explicit AnyBody(const Body& body)
+      : nearest([&body](const V& x) { return body.closest(x); }),
+        low(body.lower()),
+        high(body.upper()),
+        inwards(body.reach()) {}
+
+  [[nodiscard]] palpate::SurfacePoint<S> closest(const V& x) const noexcept { return nearest(x); }
+  [[nodiscard]] V lower() const noexcept { return low; }
+  [[nodiscard]] V upper() const noexcept { return high; }
+  [[nodiscard]] S reach() const noexcept { return inwards; }
+
+  std::function<palpate::SurfacePoint<S>(const V&)> nearest;
+  V low, high;
+  S inwards;
+};
+
 /// What the hand feels of the body that a response field describes: its force under the tool's contact area,
-/// fitted down to two radii.
-template <class Body>
-[[nodiscard]] palpate::DuffingMap<S> field_force(const palpate::ResponseField& field, const Body& body,
-                                                 const Tool& tool) {
-  const S radius = std::sqrt(tool.contact_area / std::numbers::pi_v<S>);
-  auto fitted =
-      palpate::response_map(field, body,
-                            palpate::ResponseMapParams<S>{
-                                .radius = radius, .depth = 2 * radius, .spacing = field.mesh().length / 2});
-  const auto law = fitted.map.at(body.raycast(V(0, 1, 0), -V::UnitY()).position).params();
-  std::printf("force          of the field: c1 %.0f N/m, c3 %.2g N/m^3 on top, fits within %.1f %%\n", law.c1,
-              law.c3, 100 * fitted.worst_rms);
-  return std::move(fitted.map);
-}
+/// fitted down to two radii. `top`: the point whose law is printed [m].
+[[nodiscard]] palpate::DuffingMap<S> field_force(const palpate::ResponseField& field, const AnyBody& body,
+                                                 const Tool& tool, const V& top);
 
-/// One line per region and tick in contact. Without a shape w is 1.
-template <class Device>
-void write_contacts(const std::string& file, const Device& device, const Shape* shape) {
-  std::ofstream csv(file);
-  csv << "t_s,region,tool_x_m,F_x_N,F_y_N,F_z_N,force_N,D_m,area_m2,w,modified_D_m\n";
-  for (std::size_t i = 0; i < device.recorded(); ++i) {
-    const auto& r = device.recording()[i];
-    for (std::size_t j = 0; j < r.result.contacts.size(); ++j) {
-      const palpate::ContactState<S>& c = r.result.contacts[j];
-      const S w = shape != nullptr ? shape->factor(c) : 1, D = c.displacement.norm();
-      csv << r.t << ',' << c.id << ',' << r.result.pose.to_tool(c.centre).x() << ',' << c.force.x() << ','
-          << c.force.y() << ',' << c.force.z() << ',' << c.force.norm() << ',' << D << ',' << c.area << ','
-          << w << ',' << w * D << '\n';
-    }
-  }
-  std::printf("wrote          %s\n", file.c_str());
-}
+/// A scene without its object.
+struct Stage {
+  const Options& options;
+  const Tool& tool;
+  const Script& script;
+  std::string title;
+  View view;
+  V top;  ///< the device's origin [m]
+  std::optional<Shape>& shape;
+};
 
-/// The largest change of the force from one tick to the next, and that at the ticks in which a region
-/// appears.
-template <class Device>
-void print_steps(const Device& device) {
-  double largest = 0, landing = 0;
-  for (std::size_t i = 1; i < device.recorded(); ++i) {
-    const Felt& before = device.recording()[i - 1].result;
-    const Felt& now = device.recording()[i].result;
-    const double step = (now.wrench.force - before.wrench.force).norm();
-    largest = (std::max)(largest, step);
-    if (now.regions > before.regions) landing = (std::max)(landing, step);
-  }
-  std::printf("force step     %.4f N in a tick at most; %.4f N where a region appears\n", largest, landing);
-}
+/// Runs the script and writes results into options.out; `report` prints what the object has to say first.
+int play(const Stage& stage, Feel& feel, const std::function<void()>& report = {});
+
+/// Empties the folder of the results' frames, and makes it if need be.
+void prepare_folder(const std::string& out);
 
 /// Plays the scene as options.shape and options.stepped say; results go into options.out.
 template <class Body, class Coupling>
 int play(Options options, const Scene<Body, Coupling>& scene) {
   options.tool = scene.tool;
-  std::filesystem::create_directories(options.out);
-  std::filesystem::remove_all(options.out + "/frames");  // those of an earlier run
+  prepare_folder(options.out);
   const Tool tool = make_tool(options);
   const Script script = scene.script(options, scene.body, tool);
   const auto& object = felt_object(scene.body);
@@ -102,30 +98,8 @@ int play(Options options, const Scene<Body, Coupling>& scene) {
   if (options.shape != "none") shape.emplace(make_shape(options.shape, scene.body, scene.display));
   std::optional<palpate::SweptPose<S>> sweep;
   if (options.sweep > 0) sweep.emplace(options.sweep);
-
-  // Frames from first contact on, at even distances of the updates.
-  constexpr double begin = 1.0;
-  const auto stride =
-      static_cast<std::size_t>(std::ceil((script.seconds - begin) * update_rate / most_frames));
-  std::size_t updates = 0;
-  std::vector<Frame> frames;
-  const auto update = [&](const auto& record) {
-    if (!shape) return;
-    shape->update(record.result);
-    if (record.t >= begin && updates++ % stride == 0) frames.push_back(shape->frame(record.t, record.result));
-  };
   const V top = scene.body.raycast(V(0, 1, 0), -V::UnitY()).position;
-  const auto finish = [&](const auto& device) {
-    print_steps(device);
-    write_contacts(options.out + "/contacts.csv", device, shape ? &*shape : nullptr);
-    if (!shape) return;
-    std::printf("shape          %s, %zu vertices, %zu updates that moved something, %.0f us each\n",
-                options.shape.c_str(), shape->rest().vertices.size(), shape->updates(),
-                1e6 * shape->mean_time());
-    write_series(options.out, "shape", shape->rest(), frames);
-    Pictures(options.out + "/frames", scene.view, shape->rest(), tool).write(scene.title, frames);
-    std::printf("wrote          %s/shape.pvd, %zu frames\n", options.out.c_str(), frames.size());
-  };
+  const Stage stage{options, tool, script, scene.title, scene.view, top, shape};
 
   using Object = std::remove_cvref_t<decltype(object)>;
   const auto felt_with = [&](const auto& force) {
@@ -134,27 +108,47 @@ int play(Options options, const Scene<Body, Coupling>& scene) {
       if (options.deformed) {
         if (!shape) refuse("--detect deformed needs a shape");
         using Now = palpate::DeformedSurface<Object>;
-        Feel<Contact<Now, Coupling, Force>, FollowShape> feel{
+        SolverFeel<Contact<Now, Coupling, Force>, FollowShape> feel(
             make_contact(Now(object, palpate::TriangleMesh<S>(scene.display)), tool, force, scene.coupling),
             sweep,
             palpate::EnergyLimit<S>(
                 {.centre_of_mass = tool.centre_of_mass, .contact_area = tool.contact_area}),
-            FollowShape(*shape)};
-        return perform(options, feel, tool, script, top, scene.title, update, [&](const auto& device) {
+            FollowShape(*shape));
+        return play(stage, feel, [&] {
           std::printf("detection      on the deformed shape, bulges up to %.3f mm\n",
                       1e3 * feel.follow.highest);
-          finish(device);
         });
       }
     }
     if (options.deformed) refuse("--detect deformed is for mesh files");
-    Feel<Contact<Object, Coupling, Force>> feel{
-        make_contact(object, tool, force, scene.coupling), sweep, {}, {}};
-    return perform(options, feel, tool, script, top, scene.title, update, finish);
+    SolverFeel<Contact<Object, Coupling, Force>> feel(make_contact(object, tool, force, scene.coupling),
+                                                      sweep);
+    return play(stage, feel);
   };
   if (!shape || !shape->field) return felt_with(scene.force);
-  const auto fitted = field_force(*shape->field, scene.body, tool);
-  return felt_with(fitted);
+  return felt_with(field_force(*shape->field, AnyBody(scene.body), tool, top));
+}
+
+// Compiled in surfaces.cpp; the scenes use them too.
+extern template int play(Options, const Scene<palpate::Box<S>>&);
+extern template int play(Options, const Scene<palpate::Ellipsoid<S>>&);
+
+/// An object of the command line. `shape`: the model that suits the body, where options name none.
+template <class Body>
+int run(Options options, const Body& body, palpate::MeshData<S> display, const char* shape) {
+  if (options.shape.empty()) options.shape = shape;
+  return play(options,
+              Scene<Body>{.title = "object " + std::filesystem::path(options.object).stem().string() +
+                                   ", tool " + options.tool + ", script " + options.script,
+                          .body = body,
+                          .display = std::move(display),
+                          .tool = options.tool,
+                          .force = paper_force,
+                          .coupling = {},
+                          .view = view_of(body),
+                          .script = [](const Options& o, const Body& b, const Tool& tool) {
+                            return make_script(o, b, tool.mesh);
+                          }});
 }
 
 }  // namespace touch

@@ -5,12 +5,10 @@
 /// for the pictures and within it for detection against the shape as it is now; and the frames that are kept
 /// of it.
 
-#include <palpate/elasticity/half_space.hpp>
 #include <palpate/geometry/deformed_surface.hpp>
 #include <palpate/geometry/mesh_extremal_points.hpp>
-#include <palpate/luo_xiao/beam_skeleton.hpp>
-#include <palpate/luo_xiao/interpolation/phong.hpp>
-#include <palpate/response/deformation.hpp>
+#include <palpate/luo_xiao/beam/region_skeletons.hpp>
+#include <palpate/luo_xiao/interpolation/partition.hpp>
 
 #include <chrono>
 #include <functional>
@@ -18,6 +16,10 @@
 #include <optional>
 
 #include "felt.hpp"
+
+namespace palpate {
+class ResponseField;
+}
 
 namespace touch {
 
@@ -135,49 +137,19 @@ struct FollowShape {
   }
 };
 
-/// The paper's model: skeleton, released ends, interpolation.
-template <class Body>
-[[nodiscard]] Shape skeleton_shape(const Body& body, palpate::MeshData<S> mesh) {
-  using Interpolation = palpate::PhongInterpolation<S>;
-  const palpate::AreaNeighbourhood<S> neighbourhood(
-      {.reference_area = 1e-4});  // up to 1 cm^2 a contact counts as a point
-  palpate::BeamSkeletonDeformation<Beams, Interpolation> model(
-      make_beams(body), Interpolation(palpate::make_partition(body, mesh)), neighbourhood, mesh,
-      {.fixed = bottom(body)});
-  return Shape(std::move(mesh), std::move(model), neighbourhood);
-}
+/// The paper's model: skeleton, released ends, interpolation. `fixed`: a point that stays where it is [m].
+[[nodiscard]] Shape skeleton_shape(const Beams& beams, palpate::FacePartition<S> partition, const V& fixed,
+                                   const palpate::MeshData<S>& mesh);
 
-/// Everything in the lowest tenth of the body is fixed, for the models that need a region.
-template <class Body>
-[[nodiscard]] auto bottom_region(const Body& body) {
-  const S top = body.lower().y() + S(0.1) * (body.upper().y() - body.lower().y());
-  return [top](const auto& place) { return place.y() <= top; };
-}
+/// The models that need the mesh alone: half-space and response. Everything below y = `fixed_below` [m] is fixed.
+[[nodiscard]] Shape mesh_shape(const std::string& model, const palpate::MeshData<S>& mesh, S fixed_below);
 
-/// By the model's name.
+/// By the model's name. The lowest tenth of the body is fixed, for the models that need a region.
 template <class Body>
 [[nodiscard]] Shape make_shape(const std::string& model, const Body& body, const palpate::MeshData<S>& mesh) {
-  if (model == "skeleton") return skeleton_shape(body, mesh);
-  if (model == "half-space")
-    return Shape(mesh,
-                 palpate::HalfSpaceDeformation<S>(mesh, bottom_region(body), {.nu = rubber.params().nu}));
-  if (model == "response") {
-    const auto begin = std::chrono::steady_clock::now();
-    const auto field = std::make_shared<const palpate::ResponseField>(
-        mesh, bottom_region(body),
-        palpate::ResponseField::Params{
-            .E = rubber.params().E, .nu = rubber.params().nu, .threads = 2, .progress = [](double done) {
-              std::printf("\rresponse field %3.0f %%", 100 * done);
-              std::fflush(stdout);
-            }});
-    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
-    std::printf("\rresponse field of %zu solve vertices in %.1f s\n", field->mesh().vertices.size(),
-                spent.count());
-    Shape shape(mesh, palpate::ResponseFieldDeformation<S, most_regions>(field, mesh));
-    shape.field = field;
-    return shape;
-  }
-  refuse("unknown shape " + model + " (skeleton, half-space, response, none)");
+  if (model == "skeleton")
+    return skeleton_shape(make_beams(body), palpate::make_partition(body, mesh), bottom(body), mesh);
+  return mesh_shape(model, mesh, body.lower().y() + S(0.1) * (body.upper().y() - body.lower().y()));
 }
 
 }  // namespace touch
