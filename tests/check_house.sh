@@ -1,12 +1,14 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# check_house.sh ROOT: the rules of the house that a script can check, over include/, tests/ and docs/references.bib.
+# check_house.sh ROOT: the rules of the house that a script can check, over include/, tests/ and docs/.
 # Prints file:line: what is wrong, and fails if there was anything.
 set -eu
 cd "$1"
 
-# Reading order of the folders; each includes only those before it and itself.
-layers="core geometry display detection contact law elasticity luo_xiao response resolved solver device calibrate adapters"
+# Reading order of the folders; each includes only those before it and itself. What lies in detail/, setup/ or
+# tick/ is the folder's machinery: only the folder itself includes it, and the machinery of other folders.
+layers="core geometry display detection contact law elasticity luo_xiao response resolved solver device calibrate"
+layers="$layers adapters"
 
 version=$(awk '$2 ~ /^PALPATE_VERSION_(MAJOR|MINOR|PATCH)$/ { v = v "." $3 } END { print substr(v, 2) }' \
   include/palpate/version.hpp)
@@ -14,7 +16,7 @@ version=$(awk '$2 ~ /^PALPATE_VERSION_(MAJOR|MINOR|PATCH)$/ { v = v "." $3 } END
 report=$(mktemp)
 trap 'rm -f "$report"' EXIT
 {
-  find include -name '*.hpp' | sort | xargs awk -v layers="core geometry display detection contact law elasticity luo_xiao response resolved solver device calibrate adapters" '
+  find include -name '*.hpp' | sort | xargs awk -v layers="$layers" '
     function bad(what) { print FILENAME ":" FNR ": " what }
     function end_of_file() {
       if (!once) print last ": no #pragma once"
@@ -54,11 +56,16 @@ trap 'rm -f "$report"' EXIT
     }
     /^#include/ {
       if ($2 ~ /^"/) bad("include with <>, not with quotes")
-      if ($2 ~ /^<(iostream|mutex|shared_mutex|condition_variable|future|Eigen\/Dense)>/) bad($2 " has no place in a header")
+      if ($2 ~ /^<(iostream|mutex|shared_mutex|condition_variable|future|Eigen\/Dense)>/)
+        bad($2 " has no place in a header")
       if (match($2, /^<palpate\/[a-z_]+\//)) {
         other = substr($2, 10, RLENGTH - 10)
-        if (folder == "" && FILENAME ~ /\/(config|version)[.]hpp$/) bad("this header stands below all folders")
-        if ((folder in rank) && (other in rank) && rank[other] > rank[folder]) bad(folder "/ includes " other "/, which comes after it")
+        if (folder == "" && FILENAME ~ /\/(config|version)[.]hpp$/)
+          bad("this header stands below all folders")
+        if ((folder in rank) && (other in rank) && rank[other] > rank[folder])
+          bad(folder "/ includes " other "/, which comes after it")
+        machinery = "/(detail|setup|tick)/"
+        if (other != folder && $2 ~ machinery && FILENAME !~ machinery) bad($2 " is machinery of " other "/")
       }
       if ($2 == "<palpate/palpate.hpp>") bad("the umbrella is for users")
       next
@@ -69,18 +76,24 @@ trap 'rm -f "$report"' EXIT
       gsub(/"[^"]*"/, "\"\"", code)
       if (code ~ /(^|[^_A-Za-z0-9])(thread_local|errno|std::(cout|cerr|mutex|isnan|isfinite|isinf))([^_A-Za-z0-9]|$)/)
         bad("state, I/O, lock, or a test that -ffast-math removes")
-      if (code ~ /[.]stableNorm[(]/) bad("the last digit of stableNorm depends on where its vector lies: stable_norm")
+      if (code ~ /[.]stableNorm[(]/)
+        bad("the last digit of stableNorm depends on where its vector lies: stable_norm")
       # `static` is for functions and constants: what stands before the first bracket must not be a variable.
       before = code
       gsub(/operator[^(]*/, "", before)
       sub(/[(].*/, "", before)
-      if (before ~ /(^|[ \t])(static|inline)[ \t].*[=;{]/ && before !~ /constexpr|consteval|inline[ \t]+(namespace|const)[ \t]/)
+      if (before ~ /(^|[ \t])(static|inline)[ \t].*[=;{]/ &&
+          before !~ /constexpr|consteval|inline[ \t]+(namespace|const)[ \t]/)
         bad("static state")
       if (code ~ /std::(min|max)[(]|>::(min|max)[(][)]/)
         bad("parenthesise (std::min) and (std::numeric_limits<S>::max): Windows has macros of these names")
     }
     END { end_of_file() }
   '
+
+  # Lines that a page shows whole. A table that does not fit becomes two.
+  LC_ALL=C.UTF-8 grep -rnE --include='*.hpp' --include='*.md' '.{111}' include docs README.md |
+    sed -E 's/^([^:]*:[0-9]*):.*/\1: more than 110 columns/' || true
 
   # The version is stated once.
   grep -rnF --include='*.hpp' --include='CMakeLists.txt' --include='*.cmake' --include='*.json' --include='*.md' \

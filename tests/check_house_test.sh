@@ -1,14 +1,21 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# check_house_test.sh DIRECTORY: shows that check_house.sh finds each kind of mistake, in a tree made in DIRECTORY.
+# check_house_test.sh DIRECTORY: shows that check_house.sh finds each kind of mistake, in a tree made in
+# DIRECTORY.
 set -eu
 check=$(cd "$(dirname "$0")" && pwd)/check_house.sh
 rm -rf "$1"
 mkdir -p "$1/include/palpate/core" "$1/include/palpate/law" "$1/include/palpate/elsewhere" "$1/tests" "$1/docs"
 cd "$1"
 printf '@book{known2000,\n}\n' >docs/references.bib
-printf '// SPDX-License-Identifier: MIT\n#pragma once\n/// @file  Version.\n#define PALPATE_VERSION_MAJOR 7\n#define PALPATE_VERSION_MINOR 6\n#define PALPATE_VERSION_PATCH 5\n' >include/palpate/version.hpp
-header() { { printf '// SPDX-License-Identifier: MIT\n#pragma once\n/// @file  A header. [known2000]\n'; cat; } >"include/palpate/$1"; }
+{
+  printf '// SPDX-License-Identifier: MIT\n#pragma once\n/// @file  Version.\n'
+  printf '#define PALPATE_VERSION_%s\n' 'MAJOR 7' 'MINOR 6' 'PATCH 5'
+} >include/palpate/version.hpp
+echo 'A page.' >README.md
+header() {
+  { printf '// SPDX-License-Identifier: MIT\n#pragma once\n/// @file  A header. [known2000]\n'; cat; } >"include/palpate/$1"
+}
 
 header core/good.hpp <<'END'
 #include <palpate/core/other.hpp>
@@ -37,6 +44,7 @@ expect_line() {  # expect_line MESSAGE LINE: the same for a header of core/ with
   rm include/palpate/core/bad.hpp
 }
 expect_line 'core/ includes law/, which comes after it' '#include <palpate/law/force.hpp>'
+expect_line '<palpate/law/detail/force.hpp> is machinery of law/' '#include <palpate/law/detail/force.hpp>'
 expect_line 'include with <>' '#include "other.hpp"'
 expect_line '<iostream> has no place in a header' '#include <iostream>'
 expect_line '<Eigen/Dense> has no place in a header' '#include <Eigen/Dense>'
@@ -52,6 +60,8 @@ expect_line 'state, I/O, lock' '  if (std::isnan(x)) return;'
 expect_line 'depends on where its vector lies' '  return v.stableNorm();'
 expect_line 'parenthesise (std::min)' '  return std::min(a, b);'
 expect_line 'parenthesise (std::min)' '  return std::numeric_limits<S>::max();'
+
+expect_line 'more than 110 columns' "// $(printf '%0108d' 0)"
 
 header elsewhere/bad.hpp </dev/null
 expect 'folder elsewhere is not in the list of layers'

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-# Sourced by the run scripts. `need NAME...` makes sure that each Debian package NAME, or a command of that name, is
-# there, and installs what is missing with apt-get. It also has the small things that those scripts share.
+# Sourced by the run scripts. `need NAME...` makes sure that each Debian package NAME, or a command of that
+# name, is there, and installs what is missing with apt-get. It also has the small things that those scripts
+# share.
 
 # stage TEXT: a heading, with the seconds that the stage before it took.
 stage() {
@@ -50,8 +51,14 @@ build() {
   mkdir -p build
   # A build tree keeps its compiler: start afresh when CXX names another one.
   local cache=build/$preset/CMakeCache.txt
-  if [ -n "${CXX:-}" ] && [ -f "$cache" ] && ! grep -qxF "CMAKE_CXX_COMPILER:FILEPATH=$(command -v "$CXX")" "$cache"; then
+  if [ -n "${CXX:-}" ] && [ -f "$cache" ] &&
+    ! grep -qxF "CMAKE_CXX_COMPILER:FILEPATH=$(command -v "$CXX")" "$cache"; then
     rm -r "build/$preset"
+  fi
+  # Where ccache is installed, what has been compiled once is taken from it.
+  if command -v ccache >/dev/null 2>&1; then
+    export CMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER-ccache}
+    export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS-pch_defines,time_macros}
   fi
   echo "Configuring build/$preset"
   cmake --preset "$preset" >build/configure.log 2>&1 || { cat build/configure.log >&2; return 1; }

@@ -6,7 +6,6 @@
 
 #include <palpate/core/error.hpp>
 #include <palpate/geometry/concept.hpp>
-#include <palpate/geometry/detail/triangle_query.hpp>
 
 #include <concepts>
 #include <limits>
