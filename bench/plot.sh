@@ -7,9 +7,10 @@ cd "$here/../out/bench"
 data=$(mktemp -d)
 trap 'rm -r "$data"' EXIT
 
-# Work against precision: a file per case and method, and the Pareto front, the points that no other beats in both.
-# split CSV X Y: $data/CSV.I.name, .front, .ours and .theirs (names of the methods), .ours.J and .theirs.J (time, error).
-# Method names of the library begin with "palpate". Its float rows are methods of their own, those of others are left out.
+# Work against precision: a file per case and method, and the Pareto front, the points that no other beats in
+# both. split CSV X Y: $data/CSV.I.name, .front, .ours and .theirs (names of the methods), .ours.J and
+# .theirs.J (time, error). Method names of the library begin with "palpate". Its float rows are methods of
+# their own, those of others are left out.
 split() {
   awk -F, -v x="$2" -v y="$3" -v data="$data/$1" '
     NR == 1 || !($x > 0 && $y > 0) || $y == "inf" {next}

@@ -1,5 +1,5 @@
-# Finds the OpenHaptics SDK (HDAPI): OpenHaptics_FOUND, OpenHaptics_INCLUDE_DIR and the target OpenHaptics::HD.
-# Looks in OH_SDK_BASE (3.x), 3DTOUCH_BASE (older) and the system's own places.
+# Finds the OpenHaptics SDK (HDAPI): OpenHaptics_FOUND, OpenHaptics_INCLUDE_DIR and the target
+# OpenHaptics::HD. Looks in OH_SDK_BASE (3.x), 3DTOUCH_BASE (older) and the system's own places.
 find_path(OpenHaptics_INCLUDE_DIR HD/hd.h HINTS $ENV{OH_SDK_BASE}/include $ENV{3DTOUCH_BASE}/include)
 find_path(OpenHaptics_HDU_INCLUDE_DIR HDU/hduError.h HINTS ${OpenHaptics_INCLUDE_DIR}
   $ENV{OH_SDK_BASE}/utilities/include $ENV{3DTOUCH_BASE}/utilities/include)

@@ -1,5 +1,5 @@
-# What palpate's own tests, benchmarks and examples are compiled with. All of it is PRIVATE: whoever uses palpate
-# gets an include directory, C++20 and Eigen, and no flag of ours. Warnings become errors by
+# What palpate's own tests, benchmarks and examples are compiled with. All of it is PRIVATE: whoever uses
+# palpate gets an include directory, C++20 and Eigen, and no flag of ours. Warnings become errors by
 # CMAKE_COMPILE_WARNING_AS_ERROR, which the presets set.
 
 set(PALPATE_SANITIZE "" CACHE STRING "Sanitizers for palpate's own targets, as in -fsanitize=")
