@@ -5,11 +5,13 @@
 /// define these macros on the command line, to replace the defaults below. The setting must be the same in
 /// every translation unit of a program.
 ///
-/// | macro                            | default                        | is called                               |
-/// |----------------------------------|--------------------------------|-----------------------------------------|
-/// | PALPATE_ASSERT(condition)        | assert()                       | on broken preconditions, debug builds   |
-/// | PALPATE_ON_SETUP_ERROR(message)  | write to stderr, then abort()  | without exceptions: bad input at set-up; must not return |
-/// | PALPATE_NO_THREADS               | not defined                    | defined: set-up uses no threads (response/setup/parallel.hpp) |
+/// | macro                           | default                       | is called                            |
+/// |---------------------------------|-------------------------------|--------------------------------------|
+/// | PALPATE_ASSERT(condition)       | assert()                      | on broken preconditions, debug builds |
+/// | PALPATE_ON_SETUP_ERROR(message) | write to stderr, then abort() | without exceptions: bad input        |
+/// | PALPATE_NO_THREADS              | not defined                   | defined: set-up uses no threads      |
+///
+/// PALPATE_ON_SETUP_ERROR must not return.
 
 #if __has_include(<palpate_config.hpp>)
 #include <palpate_config.hpp>

@@ -61,11 +61,11 @@ class BulletTree {
   struct Near final : btTriangleCallback {
     Near(const Vec3<S>& at, S radius) : c(at), r(radius) {}
     void processTriangle(btVector3* triangle, int, int) override {
-      const auto place = [triangle](int k) {
+      const auto vertex = [triangle](int k) {
         return Vec3<S>(static_cast<S>(triangle[k].x()), static_cast<S>(triangle[k].y()),
                        static_cast<S>(triangle[k].z()));
       };
-      if (!found) found = detail::is_near<S>(c, r, place(0), place(1), place(2));
+      if (!found) found = detail::is_near<S>(c, r, vertex(0), vertex(1), vertex(2));
     }
     Vec3<S> c;
     S r;

@@ -52,7 +52,7 @@ template <Real S>
 }  // namespace detail
 
 /// A host's fcl::BVHModel<BV> of the object as a CandidateTree. BV is fcl::AABB or fcl::OBBRSS of float or
-/// double, vertices in object coordinates [m], in the mesh's place as it is now.
+/// double, vertices in object coordinates [m], where the mesh is now.
 ///
 /// Real time: FCL's tree is walked here, from its boxes and triangles; no heap, lock, exception or I/O, and
 /// at most one visit to every box. fcl::collide() with a ball for each question would give the same answers,

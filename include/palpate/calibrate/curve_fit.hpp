@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Parameters of a law with few of them from a measured or computed curve: bounded least squares.
-/// Set-up only.
+/// @file A law's few parameters from a measured or computed curve: bounded least squares. Set-up only.
 ///
 /// Minimises sum w_i (f(p, x_i) - y_i)^2 over low <= p <= high by Levenberg and Marquardt's steps on the
-/// parameters that are not held at a bound. Derivatives by central differences. Source: [more1978].
+/// parameters that are not at an active bound. Derivatives by central differences. Source: [more1978].
 
 #include <palpate/core/error.hpp>
 
@@ -41,7 +40,7 @@ struct CurveFit {
 
 struct CurveFitParams {
   double worst_rms = 0.2;  ///< relative: a fit worse than this is refused
-  int most_steps = 200;
+  int max_steps = 200;
 };
 
 /// Fits law(p, depth) -> force. Reports: fewer than N + 2 points, numbers that are not finite, weights < 0,
@@ -96,7 +95,7 @@ template <std::size_t N, class Law>
     for (std::size_t i = 0; i < m; ++i) {
       Vector row;
       for (Eigen::Index k = 0; k < Eigen::Index(N); ++k) {
-        const double step = 1e-6 * scale[k];
+        const double step = 1e-6 * scale[k];  // about the cube root of epsilon
         Vector up = p, down = p;
         up[k] += step;
         down[k] -= step;
@@ -106,36 +105,38 @@ template <std::size_t N, class Law>
       g += points[i].weight * (evaluate(p, i) - points[i].force) * row;
     }
   };
-  const auto held = [&](Eigen::Index k) {
+  // At a bound, and downhill is beyond it.
+  const auto active = [&](Eigen::Index k) {
     return (p[k] <= low[std::size_t(k)] && g[k] > 0) || (p[k] >= high[std::size_t(k)] && g[k] < 0);
   };
-  const auto without_held = [&](double damping) {
+  const auto without_active = [&](double damping) {
     Matrix B = A;
     for (Eigen::Index k = 0; k < Eigen::Index(N); ++k) {
-      B(k, k) += damping * (A(k, k) + 1e-300);
-      if (!held(k)) continue;
+      B(k, k) += damping * (A(k, k) + 1e-300);  // never 0
+      if (!active(k)) continue;
       B.row(k).setZero();
       B.col(k).setZero();
       B(k, k) = 1;
     }
     return B;
   };
+  // Marquardt's start and factors; at a damping of 1e27 the step is below rounding.
   double damping = 1e-3, now = cost(p);
   bool settled = false;
-  for (int step = 0; step < params.most_steps && !settled; ++step) {
+  for (int step = 0; step < params.max_steps && !settled; ++step) {
     linearise();
     bool better = false;
     for (int tries = 0; tries < 30 && !better; ++tries) {
       Vector rhs = -g;
       for (Eigen::Index k = 0; k < Eigen::Index(N); ++k)
-        if (held(k)) rhs[k] = 0;
-      const Vector move = without_held(damping).ldlt().solve(rhs);
+        if (active(k)) rhs[k] = 0;
+      const Vector move = without_active(damping).ldlt().solve(rhs);
       Vector next = p + scale.cwiseProduct(move);
       for (Eigen::Index k = 0; k < Eigen::Index(N); ++k)
         next[k] = std::clamp(next[k], low[std::size_t(k)], high[std::size_t(k)]);
       const double then = cost(next);
       if (then <= now && is_finite(then)) {
-        settled = now - then <= 1e-14 * forces;
+        settled = now - then <= 1e-14 * forces;  // some roundings of the sum
         better = true;
         p = next;
         now = then;
@@ -146,7 +147,7 @@ template <std::size_t N, class Law>
     }
     settled = settled || !better;  // no step downhill is left
   }
-  if (!settled) fail(where, "the fit does not settle within the steps allowed", params.most_steps);
+  if (!settled) fail(where, "the fit does not settle within the steps allowed", params.max_steps);
   linearise();
   CurveFit<N> fit;
   std::size_t open = 0;

@@ -17,7 +17,8 @@ struct DuffingFit {
 
 /// F = c1 D + c3 D^3 over 0 < D <= D_m, the largest depth among the points, with neither slope below 0:
 ///
-///     F = y_0 (s - s^3/3) + y_1 s^3/3,   s = D / D_m,   y_0 = c1 D_m >= 0,   y_1 = (c1 + 3 c3 D_m^2) D_m >= 0
+///     F = y_0 (s - s^3/3) + y_1 s^3/3,   s = D / D_m
+///     y_0 = c1 D_m >= 0,   y_1 = (c1 + 3 c3 D_m^2) D_m >= 0
 ///
 /// so the fold of a softening law is never within the curve. Reports what fit_curve reports, and points
 /// without depth > 0.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file The force-depth curve that a response field has at a place, for a direction and a patch size: what a
-/// force law of the solver is fitted to.
+/// @file The force-depth curve of a response field at a point, for a direction and a patch size: what a force
+/// law of the solver is fitted to.
 
 #include <palpate/calibrate/curve_fit.hpp>
 #include <palpate/response/response_contact.hpp>

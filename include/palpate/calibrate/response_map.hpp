@@ -17,7 +17,7 @@ template <Real S>
 struct ResponseMapParams {
   S radius;  ///< > 0 [m]: a of the patch that the tool presses, sqrt(A/pi) of its contact area; or the ball's
   S depth;   ///< [m] > 0: the law is fitted from 0 to here
-  S spacing;  ///< [m] > 0: of the map's nodes; a third to a half of `field.mesh().length`, the solve edge, is apt
+  S spacing;  ///< [m] > 0: of the map's nodes; a third to a half of `field.mesh().length` is apt
 };
 
 /// What was fitted, and how well.
@@ -26,7 +26,7 @@ struct ResponseMap {
   using S = typename Map::Scalar;
   Map map;                          ///< for ContactSolver
   double worst_rms = 0;             ///< of all fits: root mean square residual over the curve's own, relative
-  Vec3<S> where = Vec3<S>::Zero();  ///< the place of that fit on the surface [m]
+  Vec3<S> where = Vec3<S>::Zero();  ///< the point of that fit on the surface [m]
 };
 
 namespace detail {
@@ -57,7 +57,7 @@ template <ForceMap Map, SampledBody B, class Fit>
 /// The law F(D) that `field` has for a patch pressed along the normal, at the nodes of a grid over the body,
 /// each for the surface's point closest to it. Friction and stick-slip work on top as on any law. Left out:
 /// the field's own tangential stiffness (the solver takes the normal law's), pushes off the normal, and what
-/// several contacts do to each other. Reports bad parameters, and a place whose curve Duffing's law does not
+/// several contacts do to each other. Reports bad parameters, and a point whose curve Duffing's law does not
 /// fit.
 template <SampledBody B>
 [[nodiscard]] ResponseMap<DuffingMap<typename B::Scalar>> response_map(

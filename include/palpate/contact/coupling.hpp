@@ -3,13 +3,13 @@
 
 /// @file What contact regions do to each other's force (section VI).
 ///
-/// | shipped              | F_S of a region                                     | use it when                                    |
-/// |----------------------|-----------------------------------------------------|------------------------------------------------|
-/// | `IndependentRegions` | its own force                                       | absent, the default: forces have a potential   |
-/// | `RegionSkeletons`    | + the stress forces that the others' beams pass on  | the paper's VI: regions feel each other        |
+/// | shipped              | F_S of a region                                    | use it when                 |
+/// |----------------------|----------------------------------------------------|-----------------------------|
+/// | `IndependentRegions` | its own force                                      | absent, the default         |
+/// | `RegionSkeletons`    | + the stress forces that the others' beams pass on | regions feel each other, VI |
 ///
-/// The stress forces have no potential (docs/beams.md), so friction's promise of passivity holds for
-/// independent regions only.
+/// The forces of independent regions have a potential. The stress forces have none (docs/beams.md), so
+/// friction's promise of passivity is for independent regions only.
 
 #include <palpate/core/absent.hpp>
 #include <palpate/core/vector.hpp>
@@ -48,7 +48,7 @@ concept HasShare =
     };
 
 namespace detail {
-/// Checked in the place of a coupling that is absent.
+/// Checked instead of a coupling that is absent.
 template <class S>
 struct NoCoupling {
   struct Contact {

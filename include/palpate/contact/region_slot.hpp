@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  A region's place in a scene's fixed list of regions, and what became of it in this tick.
+/// @file  The slot of a region in the fixed list of regions, and what became of it in this tick.
 
 #include <cstddef>
 #include <cstdint>

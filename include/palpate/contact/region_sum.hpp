@@ -148,6 +148,7 @@ class alignas(64) LeafSum {
   /// do not belong. `per_area`: 1/A_i [1/m^2].
   void add(const PointLanes<S>& x, const PenetrationLanes<S>& in, const List& f,
            const List& per_area) noexcept {
+    if (empty_) clear();
     for (std::size_t i = 0; i < lane_count; i += V::size()) add_part(i, x, in, f, per_area);
     for (const S depth : in.depth) sum_.points += depth > S(0) ? 1u : 0u;
     if (!(detail::max_of(in.depth) > sum_.deepest)) return;
@@ -162,6 +163,9 @@ class alignas(64) LeafSum {
   /// Adds a force [N] at x [m] that belongs to no point.
   void add(const Vec3<S>& x, const Vec3<S>& f) noexcept { sum_.add(Vec3<S>(x - centre_), f); }
 
+  /// True before the first leaf.
+  [[nodiscard]] bool empty() const noexcept { return empty_; }
+  /// Precondition: not empty().
   [[nodiscard]] RegionSum<S> total() const noexcept {
     RegionSum<S> sum = sum_;
     sum.force += total(force_);
@@ -175,7 +179,7 @@ class alignas(64) LeafSum {
  private:
   using V = detail::leaf_simd<S>;
   struct List3 {
-    List x{}, y{}, z{};
+    List x, y, z;
     [[nodiscard]] PALPATE_INLINE detail::SimdVec3<V> at(std::size_t i) const noexcept {
       return {V(&x[i]), V(&y[i]), V(&z[i])};
     }
@@ -209,10 +213,20 @@ class alignas(64) LeafSum {
     return {total(list.x), total(list.y), total(list.z)};
   }
 
+  // Not in the constructor: a tool in free air needs none of it.
+  void clear() noexcept {
+    for (List3* const list : {&force_, &torque_, &moment_})
+      list->x.fill(S(0)), list->y.fill(S(0)), list->z.fill(S(0));
+    magnitude_.fill(S(0));
+    spread_.fill(S(0));
+    empty_ = false;
+  }
+
   List3 force_, torque_, moment_;
-  List magnitude_{}, spread_{};
+  List magnitude_, spread_;
   Vec3<S> centre_;
   RegionSum<S> sum_{};  // what is not a plain sum: the deepest point and the count
+  bool empty_ = true;
 };
 
 }  // namespace palpate

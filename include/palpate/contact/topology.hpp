@@ -3,11 +3,11 @@
 
 /// @file Contact topology: how many contact regions a scene can have (sections II and III).
 ///
-/// | shipped          | regions                                | tool          | use it when                                     |
-/// |------------------|----------------------------------------|---------------|-------------------------------------------------|
-/// | `SinglePoint`    | 1, of one point                        | `PointTool`   | a stylus tip; the cheapest                      |
-/// | `SingleRegion`   | 1, all points that touch               | `ToolPoints`  | a tool that can touch in one place only         |
-/// | `Regions<N>`     | up to N, clustered by the distance r   | `ToolPoints`  | the general case                                |
+/// | shipped        | regions                              | tool         | use it when                      |
+/// |----------------|--------------------------------------|--------------|----------------------------------|
+/// | `SinglePoint`  | 1, of one point                      | `PointTool`  | a stylus tip; the cheapest       |
+/// | `SingleRegion` | 1, all points that touch             | `ToolPoints` | a tool that touches in one patch |
+/// | `Regions<N>`   | up to N, clustered by the distance r | `ToolPoints` | the general case                 |
 ///
 /// With regions, the surplus over N joins the nearest region and `Status::region_overflow` is set. The normal
 /// force is a sum over points and does not depend on the clustering; only friction does.
@@ -57,7 +57,7 @@ template <std::size_t N, MassSharing W>
 inline constexpr bool is_shipped_topology<Regions<N, W>> = true;
 }  // namespace detail
 
-/// One of the three above: the solver has a way of collecting points for each of them and for no other.
+/// One of the three above: the solver knows how to collect points for these and for no other.
 template <class T>
 concept Topology = detail::is_shipped_topology<T>;
 

@@ -14,7 +14,7 @@ namespace palpate {
 namespace detail {
 /// Upper bound of |R v| / |v|: 1 to rounding for a rotation, and safe for what is_usable() lets pass.
 template <Real S>
-[[nodiscard]] inline S largest_stretch(const Mat3<S>& R) noexcept {
+[[nodiscard]] inline S max_stretch(const Mat3<S>& R) noexcept {
   const Mat3<S> G = R.transpose() * R;
   return std::sqrt(G.cwiseAbs().rowwise().sum().maxCoeff());  // Gershgorin's bound on the largest eigenvalue
 }
@@ -49,7 +49,7 @@ template <Real S, ContactSurface B, class Visit>
 inline void for_each_candidate_leaf(const ToolPoints<S>& tool, const Pose<S>& X, const B& surface,
                                     const Visit& visit) noexcept {
   const auto nodes = tool.nodes();
-  const S stretch = detail::largest_stretch(X.rotation);
+  const S stretch = detail::max_stretch(X.rotation);
   // More than the rounding of X * p, which may differ between a ball's centre and its points.
   const S reach =
       nodes[0].centre.cwiseAbs().maxCoeff() + nodes[0].radius + X.translation.cwiseAbs().maxCoeff();

@@ -28,8 +28,8 @@ struct PointTool {
 /// A_0 belongs to the tool (a mallet's face, a pin's tip), not to the tick: a point carries A_i / A_0 of the
 /// force law.
 ///
-/// Points are stored by place: `original(i)` is the number that point i had when it was given. The tree's
-/// nodes are in pre-order, a node's points are contiguous, leaves hold at most `lane_count`; a walk needs no
+/// Points are sorted by position: `original(i)` is the number that point i had when it was given. The tree's
+/// nodes are in pre-order, a node's points are contiguous, leaves have at most `lane_count`; a walk needs no
 /// stack (candidates.hpp). Constructors report what is out of range; `spacing` as resample().
 template <Real S>
 class ToolPoints {

@@ -20,16 +20,16 @@ namespace palpate {
 ///     E += -1/2 (F + F') . dx          put in by the hand; F of this tick, F' of the last; torques likewise
 ///     F := s F,   s = min(1, E / U),   U = 1/4 sum F_n D_n min(1, A_0 / A)
 ///
-/// | symbol | name                     | unit | range                                                        |
-/// |--------|--------------------------|------|--------------------------------------------------------------|
-/// | A_0    | `Params::contact_area`   | m^2  | the tool's, as ToolPoints has it; of no account for one point |
-/// |        | `Params::centre_of_mass` | m    | of the tool, in tool coordinates                             |
+/// | symbol | name                     | unit | range                                                       |
+/// |--------|--------------------------|------|-------------------------------------------------------------|
+/// | A_0    | `Params::contact_area`   | m^2  | the tool's, as ToolPoints has it; not used for one point    |
+/// |        | `Params::centre_of_mass` | m    | of the tool, in tool coordinates                            |
 ///
-/// U is no more than what the contacts hold by a force law from linear to cubic, evenly pressed. While E is
-/// no less, as in passive scenes, the wrench is passed on bit for bit. Where energy was made, the force fades
-/// on its way out without a jump: with depth at most three times as fast as a linear law's, down to 0 with U;
-/// besides, none may spend more than E in its tick. E never falls below minus half a tick's work, and that is
-/// paid back first. So from one moment without contact to any later time
+/// U is no more than the energy that evenly pressed contacts store by a force law from linear to cubic. While E
+/// is no less, as in passive scenes, the wrench is passed on bit for bit. Where energy was made, the force fades
+/// as the tool leaves, without a jump: with depth at most three times as fast as a linear law's, down to 0 with
+/// U. Besides, no tick may spend more than E. E never falls below minus half a tick's work, and that is paid
+/// back first. So from one moment without contact to any later time
 ///
 ///     work on the hand <= 1/2 max |F . dx|
 ///
@@ -57,19 +57,21 @@ class EnergyLimit {
 
   [[nodiscard]] Wrench<S> pass(const Wrench<S>& wrench, const Pose<S>& X,
                                std::span<const ContactState<S>> contacts) noexcept {
-    S held = S(0);
+    S energy = S(0);
     for (const ContactState<S>& c : contacts) {
       const S share = c.area > p_.contact_area ? p_.contact_area / c.area : S(1);
-      held -= share * c.normal_force * c.displacement.dot(c.normal) / S(4);
+      energy -= share * c.normal_force * c.displacement.dot(c.normal) / S(4);
     }
-    if (!is_usable(X) || !is_finite(wrench.force) || !is_finite(wrench.torque) || !is_finite(held)) {
+    if (!is_usable(X) || !is_finite(wrench.force) || !is_finite(wrench.torque) || !is_finite(energy)) {
       reset();
       return {};
     }
-    const Vec3<S> way =
+    const Vec3<S> move =
         known_ ? Vec3<S>(X * p_.centre_of_mass - last_ * p_.centre_of_mass) : Vec3<S>(Vec3<S>::Zero());
     const Vec3<S> turn = known_ ? turned(last_.rotation, X.rotation) : Vec3<S>(Vec3<S>::Zero());
-    const auto half_work = [&](const Wrench<S>& w) { return (w.force.dot(way) + w.torque.dot(turn)) / S(2); };
+    const auto half_work = [&](const Wrench<S>& w) {
+      return (w.force.dot(move) + w.torque.dot(turn)) / S(2);
+    };
     known_ = true;
     last_ = X;
     stored_ -= half_work(out_);
@@ -82,7 +84,7 @@ class EnergyLimit {
     const S left = (std::max)(stored_, S(0)), work = half_work(wrench);
     // Going in, the energy of this very step counts as well: a contact begins at s = 1.
     const S after = work < S(0) ? left - work : left;
-    if (after < held) scale_ = after / held;
+    if (after < energy) scale_ = after / energy;
     if (scale_ * work > left) scale_ = left / work;
     out_ = scale_ < S(1) ? Wrench<S>{scale_ * wrench.force, scale_ * wrench.torque} : wrench;
     stored_ -= scale_ * work;

@@ -53,7 +53,7 @@ constexpr GateStatus& operator|=(GateStatus& a, GateStatus b) noexcept { return 
 ///
 /// with r = max_force_rate and L the force limit: `max_force`, lowered toward `continuous_force` Fc by a heat
 /// estimate q' = (|f3|^2 - q)/heat_time: L = max_force for q <= Fc^2/2, falling linearly to Fc at q = Fc^2.
-/// Held for ever, a demand above Fc ends at Fc. Torque goes through the same stages without the heat
+/// A demand above Fc that lasts ends at Fc. Torque goes through the same stages without the heat
 /// estimate. The output is continuous in the input except for a trip's drop to zero; |force| <= max_force
 /// always.
 ///
@@ -92,7 +92,7 @@ class Gate {
     // Infinity becomes the largest limit, which never acts: infinities are not safe under -ffast-math.
     const auto limit = [&](S value, const char* rule) {
       if (!is_infinity(value)) check(value, rule);
-      return is_infinity(value) ? largest : value;
+      return is_infinity(value) ? max_limit : value;
     };
     force_rate_ = limit(params.max_force_rate, "max_force_rate [N/s] must be in [1e-6, 1e9] or infinity");
     torque_rate_ =
@@ -105,7 +105,7 @@ class Gate {
   }
 
   /// What may go to the motors for the demand `wrench`. `contact`: the solver's, true when anything touches.
-  /// `dt`: time since the last call [s]; 0 is allowed and holds the output. `speed`: of the tip [m/s].
+  /// `dt`: time since the last call [s]; 0 is allowed and keeps the output. `speed`: of the tip [m/s].
   [[nodiscard]] Wrench<S> pass(const Wrench<S>& wrench, bool contact, S dt, S speed = S(0)) noexcept {
     status_ = GateStatus::ok;
     if (!is_finite(dt) || dt < S(0)) {
@@ -160,15 +160,17 @@ class Gate {
 
  private:
   using Bits = std::conditional_t<sizeof(S) == sizeof(std::uint32_t), std::uint32_t, std::uint64_t>;
-  static constexpr S smallest = S(1e-6),
-                     largest = S(1e9);  // squares and quotients of these are safe in float
+  static constexpr S min_limit = S(1e-6),
+                     max_limit = S(1e9);  // squares and quotients of these are safe in float
 
-  [[nodiscard]] static bool in_range(S x) noexcept { return is_finite(x) && x >= smallest && x <= largest; }
+  [[nodiscard]] static bool in_range(S x) noexcept {
+    return is_finite(x) && x >= min_limit && x <= max_limit;
+  }
   [[nodiscard]] static bool is_infinity(S x) noexcept {
     return std::bit_cast<Bits>(x) == std::bit_cast<Bits>(std::numeric_limits<S>::infinity());
   }
   [[nodiscard]] static bool is_sane(const Vec3<S>& v) noexcept {
-    return is_finite(v) && v.cwiseAbs().maxCoeff() <= largest;
+    return is_finite(v) && v.cwiseAbs().maxCoeff() <= max_limit;
   }
 
   void trip(GateStatus why) noexcept {

@@ -18,7 +18,7 @@ namespace palpate {
 class TimeHistogram {
  public:
   void add(std::int64_t ns) noexcept {
-    const std::uint64_t value = ns < 0 ? 0 : (std::min)(static_cast<std::uint64_t>(ns), largest);
+    const std::uint64_t value = ns < 0 ? 0 : (std::min)(static_cast<std::uint64_t>(ns), max_ns);
     ++counts_[bucket(value)];
     ++count_;
     sum_ += value;
@@ -47,7 +47,7 @@ class TimeHistogram {
 
  private:
   static constexpr std::size_t octave = 32;  // buckets per octave, and the exact range
-  static constexpr std::uint64_t largest = (std::uint64_t{1} << 40) - 1;
+  static constexpr std::uint64_t max_ns = (std::uint64_t{1} << 40) - 1;
 
   [[nodiscard]] static constexpr std::size_t bucket(std::uint64_t value) noexcept {
     if (value < octave) return static_cast<std::size_t>(value);

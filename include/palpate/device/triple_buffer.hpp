@@ -28,7 +28,7 @@ concept PlainValue =
 /// | `publish(value)`                | `if (b.fetch()) use(b.front());`  fetch() is false: no news  |
 /// | or fill `back()`, `publish()`   | `front()` stays valid and unchanged until the next fetch()   |
 ///
-/// back() holds an old value, two or more publications ago: fill it completely.
+/// back() has an old value, two or more publications ago: fill it completely.
 template <PlainValue T>
 class TripleBuffer {
  public:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  The only place where all of it meets: one servo tick, from the tool's pose to the wrench on it.
-/// The include list is the data flow.
+/// @file  One servo tick, from the tool's pose to the wrench on it. Only here do all rooms of the force meet; the
+/// include list is the data flow.
 
 // clang-format off
 #include <palpate/core/pose.hpp>
@@ -46,14 +46,14 @@ struct TickResult {
 
 /// Contact of a rigid tool with an elastic object: sections II to IV of [luo2005], one tick at a time.
 ///
-/// | role       | parameter  | ships                                                               | default      |
-/// |------------|------------|---------------------------------------------------------------------|--------------|
-/// | object     | `Object`   | Sphere, Ellipsoid, Box, Cylinder, Superellipsoid, MeshSurface, SampledSurface, DeformedSurface | |
-/// | force law  | `Force`    | DuffingForce, LinearForce, PowerLawForce, HertzForce, TabulatedForce, decorators; DuffingMap, HertzMap | |
-/// | friction   | `Friction` | Frictionless, CoulombFriction, PowerLawFriction                     | Frictionless |
-/// | regions    | `Contacts` | SinglePoint, SingleRegion, Regions<N>                               | SinglePoint  |
-/// | wrench     | `Acting`   | AtContact, AtMassCentre                                             | AtContact    |
-/// | coupling   | `Coupling` | IndependentRegions, RegionSkeletons (section VI)                    | IndependentRegions |
+/// | role      | parameter  | ships                                               | default              |
+/// |-----------|------------|-----------------------------------------------------|----------------------|
+/// | object    | `Object`   | the surfaces of geometry/concept.hpp                |                      |
+/// | force law | `Force`    | the laws of law/force/concept.hpp, maps of law/map/ |                      |
+/// | friction  | `Friction` | Frictionless, CoulombFriction, PowerLawFriction     | `Frictionless`       |
+/// | regions   | `Contacts` | SinglePoint, SingleRegion, Regions<N>               | `SinglePoint`        |
+/// | wrench    | `Acting`   | AtContact, AtMassCentre                             | `AtContact`          |
+/// | coupling  | `Coupling` | IndependentRegions, RegionSkeletons (section VI)    | `IndependentRegions` |
 ///
 /// Slip and skew rules belong to the friction law, mass sharing to the topology. An absent policy is a type
 /// and costs no byte and no instruction.
@@ -143,7 +143,7 @@ class ContactSolver {
   using Sum = typename Collector<Contacts, S>::template Sum<Force>;
   using Sums = std::array<Sum, max_regions>;
 
-  struct Stuck {  // what friction remembers of a region
+  struct Memory {  // what friction remembers of a region
     Anchor<S> anchor;
     Vec3<S> friction;  // of the last tick [N]
     S depth;           // D_n of the last tick [m]
@@ -210,25 +210,25 @@ class ContactSolver {
     ContactState<S> contact{slot.id,         sum.points, ContactMode::frictionless, sum.centre(), normal,
                             -depth * normal, sum.force,  Vec3<S>::Zero(),           normal_force, sum.area()};
     if constexpr (has_friction) {
-      Stuck& stuck = stuck_[k];
+      Memory& memory = memory_[k];
       if (slot.merged == 0 && slot.parent == RegionSlot::none) {
-        stuck.anchor = Anchor<S>::begin(X, contact.centre, normal, depth);
+        memory.anchor = Anchor<S>::begin(X, contact.centre, normal, depth);
       }
-      const AnchoredForce<S> held = advance<typename Friction::Slip, typename Friction::Skew>(
-          stuck.anchor, friction_, detail::law_at(force_, contact.centre), X, normal, contact.centre, depth,
+      const AnchoredForce<S> anchored = advance<typename Friction::Slip, typename Friction::Skew>(
+          memory.anchor, friction_, detail::law_at(force_, contact.centre), X, normal, contact.centre, depth,
           normal_force);
-      if (held.normal_force != normal_force && normal_force > S(0))
-        sum.scale(held.normal_force / normal_force);
-      stuck.friction = held.friction;
-      stuck.depth = depth;
-      contact.mode = stuck.anchor.slip.sliding ? ContactMode::sliding : ContactMode::sticking;
-      contact.centre = held.at;
-      contact.displacement += held.stretch;
-      contact.friction = held.friction;
-      contact.force = sum.force + held.friction;
-      contact.normal_force = held.normal_force;
+      if (anchored.normal_force != normal_force && normal_force > S(0))
+        sum.scale(anchored.normal_force / normal_force);
+      memory.friction = anchored.friction;
+      memory.depth = depth;
+      contact.mode = memory.anchor.slip.sliding ? ContactMode::sliding : ContactMode::sticking;
+      contact.centre = anchored.at;
+      contact.displacement += anchored.stretch;
+      contact.friction = anchored.friction;
+      contact.force = sum.force + anchored.friction;
+      contact.normal_force = anchored.normal_force;
       if constexpr (std::same_as<Acting, AtContact>) {
-        wrench.torque += (held.at - X * centre_of_mass()).cross(held.friction);
+        wrench.torque += (anchored.at - X * centre_of_mass()).cross(anchored.friction);
       }
     }
     wrench.force += contact.force;
@@ -281,7 +281,7 @@ class ContactSolver {
     requires(has_friction && ClusteredTopology<Contacts>)
   {
     using Skew = typename Friction::Skew;
-    const std::array<Stuck, max_regions> last = stuck_;
+    const std::array<Memory, max_regions> last = memory_;
     std::array<S, max_regions> share{};  // of the predecessors' total normal force
     std::array<int, max_regions> heirs{};
     for (std::size_t p = 0; p < max_regions; ++p) {
@@ -316,7 +316,7 @@ class ContactSolver {
         strength = (std::max)(strength, before.slip.strength);
         sliding = sliding || before.slip.sliding;
       }
-      Anchor<S>& anchor = stuck_[k].anchor;
+      Anchor<S>& anchor = memory_[k].anchor;
       const auto& law = detail::law_at(force_, sums[k].centre());
       const S normal_force = sums[k].normal_force();
       const S depth = law.depth(normal_force);
@@ -329,16 +329,16 @@ class ContactSolver {
       // A normal across the force keeps all of it where regions on both sides of an edge merge; slips turn it
       // back.
       const Vec3<S> along = unit_or<S>(friction, Vec3<S>::Zero());
-      const S held = friction.norm();
+      const S carried = friction.norm();
       anchor.normal =
           unit_or<S>(tangential<S>(unit_or<S>(normal, sums[k].normal()), along), perpendicular<S>(along));
       // A merged region's limit may be below the sum of its parts' (beta < 1): the excess wears off with
       // travel.
       const S limit = sliding ? friction_.sliding_limit(normal_force) : friction_.static_limit(normal_force);
       if (limit > S(0))
-        strength = (std::max)(strength, (std::min)(held / limit, S(1) / (std::numeric_limits<S>::min)()));
+        strength = (std::max)(strength, (std::min)(carried / limit, S(1) / (std::numeric_limits<S>::min)()));
       anchor.slip = {sliding, strength};
-      const S stretch = carried_stretch<Skew>(law, depth, held, energy, anchor.slip);
+      const S stretch = carried_stretch<Skew>(law, depth, carried, energy, anchor.slip);
       anchor.slip.slid = stretch;
       anchor.origin = anchor.tip + stretch * along + depth * anchor.normal;
     }
@@ -352,7 +352,7 @@ class ContactSolver {
   PALPATE_NO_UNIQUE_ADDRESS typename Coupling::Result passed_on_{};
   Collector<Contacts, S> collector_;
   Last last_{};
-  PALPATE_NO_UNIQUE_ADDRESS Present<std::array<Stuck, max_regions>, 0, has_friction> stuck_{};
+  PALPATE_NO_UNIQUE_ADDRESS Present<std::array<Memory, max_regions>, 0, has_friction> memory_{};
   FixedVector<ContactState<S>, max_regions> contacts_;
 };
 

@@ -49,8 +49,8 @@ class RegionTracker {
     touched_[now_].count = 0;
   }
 
-  /// Takes this tick's touching tool points, given by index, with `position(i)` the place of list entry i
-  /// [m].
+  /// Takes this tick's touching tool points, given by index, with `position(i)` the position of list
+  /// entry i [m].
   template <class Position>
   Status update(std::span<const std::uint32_t> touching, const Position& position) noexcept {
     for (std::size_t k = 0; k < N; ++k) {
@@ -84,7 +84,7 @@ class RegionTracker {
   // The points of one tick as a sparse set: membership in O(1) without clearing anything.
   struct Touched {
     std::vector<std::uint32_t> list;   // touching points
-    std::vector<std::uint32_t> where;  // point -> place in list, valid only if list agrees
+    std::vector<std::uint32_t> where;  // point -> index in list, valid only if list agrees
     std::vector<std::uint8_t> slot;    // slot of each entry of list
     std::size_t count = 0;
 
@@ -155,10 +155,10 @@ class RegionTracker {
       c.slot = none;
       c.parent = none;
       const auto shared = count_shared(c);
-      std::uint32_t most = 0;
+      std::uint32_t max_shared = 0;
       for (std::size_t k = 0; k < N; ++k) {
-        if (shared[k] > most) {
-          most = shared[k];
+        if (shared[k] > max_shared) {
+          max_shared = shared[k];
           c.parent = static_cast<std::uint8_t>(k);
         }
         if (shared[k] > shared_with_heir[k]) {
@@ -218,11 +218,11 @@ class RegionTracker {
                        const Position& position) const noexcept {
     const Vec3<S> from = position(queue_[components_[j].begin]);
     std::size_t best = 0;
-    S least = std::numeric_limits<S>::infinity();
+    S min_distance = std::numeric_limits<S>::infinity();
     for (std::size_t k = 0; k < N; ++k) {
       const S distance = (position(queue_[components_[owner[k]].begin]) - from).squaredNorm();
-      if (distance < least) {
-        least = distance;
+      if (distance < min_distance) {
+        min_distance = distance;
         best = k;
       }
     }

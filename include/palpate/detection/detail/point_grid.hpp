@@ -62,11 +62,11 @@ class PointGrid {
   /// The nearest point nearer to x than r, the first of equal ones; `none` if there is none.
   [[nodiscard]] std::uint32_t nearest(const Vec3<S>& x) const {
     std::uint32_t best = none;
-    S least = square_;
+    S min_square = square_;
     for_each_near(x, [&](std::uint32_t i, S d2) {
-      if (!(d2 < least || (d2 == least && i < best))) return;
+      if (!(d2 < min_square || (d2 == min_square && i < best))) return;
       best = i;
-      least = d2;
+      min_square = d2;
     });
     return best;
   }

@@ -3,19 +3,19 @@
 
 /// @file What a force law must offer. Read this before writing one.
 ///
-/// | shipped              | law                         | use it when                                               |
-/// |----------------------|-----------------------------|-----------------------------------------------------------|
-/// | `DuffingForce`       | F = c1 D + c3 D^3, eq. (3)  | the default: stiffens (c3 > 0) or softens (c3 < 0)        |
-/// | `LinearForce`        | F = k D                     | a baseline, or a virtual wall                             |
-/// | `PowerLawForce`      | F = k D^p                   | Hertz (p = 3/2), cone (p = 2)                             |
-/// | `HertzForce`         | D = (F/k)^(2/3) + C F       | a ball on a body of finite size                           |
-/// | `TabulatedForce`     | monotone curve through data | measured or computed force-displacement curves            |
-/// | `SaturatedForce<L>`  | min(L, limit), smooth       | decorator: caps what a law can ask of the device          |
-/// | `DampedForce<L>`     | L + rate term, eq. (1)      | decorator: the transient term; the only one that needs dt |
+/// | shipped             | law                         | use it when                                        |
+/// |---------------------|-----------------------------|----------------------------------------------------|
+/// | `DuffingForce`      | F = c1 D + c3 D^3, eq. (3)  | the default: stiffens (c3 > 0) or softens (c3 < 0) |
+/// | `LinearForce`       | F = k D                     | a baseline, or a virtual wall                      |
+/// | `PowerLawForce`     | F = k D^p                   | Hertz (p = 3/2), cone (p = 2)                      |
+/// | `HertzForce`        | D = (F/k)^(2/3) + C F       | a ball on a body of finite size                    |
+/// | `TabulatedForce`    | monotone curve through data | measured or computed force-displacement curves     |
+/// | `SaturatedForce<L>` | min(L, limit), smooth       | decorator: caps what a law can ask of the device   |
+/// | `DampedForce<L>`    | L + rate term, eq. (1)      | decorator: the transient term; needs dt            |
 ///
 /// Convention: depth D [m] > 0 is compression and force F [N] > 0 pushes the tool out; D <= 0 is no contact
-/// and gives exactly 0, and so does NaN, whatever the host's flags. Laws hold no state, use no heap and no
-/// Eigen. Absent on purpose: adhesion, because F < 0 has no place in the friction limit.
+/// and gives exactly 0, and so does NaN, whatever the host's flags. Laws have no state, use no heap and no
+/// Eigen. Absent on purpose: adhesion, because the friction limits are those of F >= 0.
 
 #include <palpate/core/scalar.hpp>
 

@@ -16,7 +16,8 @@
 namespace palpate {
 
 namespace detail {
-/// Cube root of x > 0 within 3.2 %: a third of the exponent, and of the mantissa on a chord.
+/// Cube root of x > 0 within 3.2 %: a third of the exponent, and of the mantissa on a chord. The constants are
+/// two thirds of the exponent's bias, less what makes the errors above and below equal.
 template <Real S>
 [[nodiscard]] inline S rough_cbrt(S x) noexcept {
   if (x < (std::numeric_limits<S>::min)()) return std::cbrt(x);  // has no exponent
@@ -41,7 +42,7 @@ template <Real S>
 /// | c1     | `c1`     | N/m   | >= 0; > 0 unless c3 > 0                          |
 /// | c3     | `c3`     | N/m^3 | any; > 0 stiffens, < 0 softens                   |
 ///
-/// Softening is stable only for D < D_max = sqrt(c1 / (3 |c3|)); from there on the force is held at
+/// Softening is stable only for D < D_max = sqrt(c1 / (3 |c3|)); from there on the force stays at
 /// F_max = (2/3) c1 D_max and dF/dD is 0. dF/dD jumps from 0 to c1 at D = 0.
 /// The coefficients belong to the object, not to the tool's mass. Bad parameters: SetupError.
 /// The inverse is within 2.5 epsilon of the exact root over the whole range, up to the fold D_max; a
@@ -145,11 +146,12 @@ class DuffingForce {
     if (!is_positive(force)) return S(0);
     if (!(force < max_force_)) return max_depth_;
     if (p_.c3 == S(0)) return force / p_.c1;
+    // Above 3/4 of F_max the distance to the fold has more digits than D.
     if (p_.c3 < S(0) && force > S(0.75) * max_force_) return depth_near_fold(force);
-    // D = D0 y with a y + b y^3 = 1. The smaller of the two pure laws' roots is D0, the cubic one within 3.2
-    // %; then the root y lies in [0.66, 1.14], a and b are of order 1 at most, and a polynomial is within 2.7
-    // % of it: two of Halley's steps, of cubic convergence, do the rest. a and b come from the rounded D0, so
-    // its error does not count.
+    // D = D0 y with a y + b y^3 = 1. D0 is the min of the roots of the linear and of the cubic law alone, the
+    // cubic one within 3.2 %. The root y lies in [0.66, 1.14], a and b are of order 1 at most, and the fitted
+    // polynomials below are within 2.7 % of it. Two of Halley's steps, of cubic convergence, do the rest. a and
+    // b come from the rounded D0, so its error does not count.
     S start = per_c1_ <= (std::numeric_limits<S>::max)() ? force * per_c1_
               : p_.c1 > S(0)                             ? force / p_.c1  // subnormal
                                                          : std::numeric_limits<S>::infinity();

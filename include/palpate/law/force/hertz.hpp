@@ -17,11 +17,11 @@ namespace palpate {
 ///
 ///     D = (F/k)^(2/3) + C F,   energy = (2/5) k^(-2/3) F^(5/3) + C F^2 / 2      (F = 0 for D <= 0)
 ///
-/// | symbol | name         | unit    | range                                                                |
-/// |--------|--------------|---------|----------------------------------------------------------------------|
-/// | D      | argument     | m       | any; D <= 0 and NaN give 0                                           |
-/// | k      | `k`          | N/m^1.5 | > 0: (4/3) E/(1-nu^2) sqrt(R), R the relative radius of curvature    |
-/// | C      | `compliance` | m/N     | how much the body as a whole gives way; 0 is a half-space, < 0 a layer on something stiff |
+/// | symbol | name         | unit    | range                                                             |
+/// |--------|--------------|---------|-------------------------------------------------------------------|
+/// | D      | argument     | m       | any; D <= 0 and NaN give 0                                        |
+/// | k      | `k`          | N/m^1.5 | > 0: (4/3) E/(1-nu^2) sqrt(R), R the relative radius of curvature |
+/// | C      | `compliance` | m/N     | of the body as a whole; 0: a half-space, < 0: a layer on a stiff base |
 ///
 /// F = k D^(3/2) where D is small, D/C where it is large. dF/dD is 0 at D = 0. Within 8 epsilon of the exact
 /// root. With C < 0 D ends before F does: from e = C k sqrt(D) = -0.3 on, F = 2.06 k D^(3/2). Bad parameters:
@@ -88,7 +88,7 @@ class HertzForce {
   // v at e = 0; three of Halley's steps, of cubic convergence, leave rounding alone.
   [[nodiscard]] Split at(S depth) const noexcept {
     const S d = (std::min)(depth, series_depth()), root = std::sqrt(d), e = p_.compliance * p_.k * root;
-    S v = S(1) / std::cbrt(S(1) + S(1.5) * e);
+    S v = S(1) / std::cbrt(S(1) + S(1.5) * e);  // slope -1/2 at e = 0
     for (int i = 0; i < 3; ++i) {
       const S ev = e * v, f = v * v * (S(1) + ev) - S(1), f1 = v * (S(2) + S(3) * ev), f2 = S(2) + S(6) * ev;
       v -= S(2) * f * f1 / (S(2) * f1 * f1 - f * f2);
@@ -96,7 +96,7 @@ class HertzForce {
     const S force = p_.k * root * d * (v * v * v), over = depth / d;
     return {depth > d ? force * over * std::sqrt(over) : force, d, force, v * v};
   }
-  // e = -0.3; that without end would be at -0.385.
+  // Where the series ends: e = -0.3. The fold is at e = -0.385, -2/(3 sqrt(3)).
   [[nodiscard]] S series_depth() const noexcept {
     if (!(p_.compliance < S(0))) return (std::numeric_limits<S>::max)();
     const S root = S(-0.3L) / (p_.compliance * p_.k);

@@ -19,9 +19,9 @@ namespace palpate {
 ///     F = a L + k s - (k s)^2 / (4 w)             s = D - D_k <= 2 w / k,  w = (1 - a) L,  k = law'(D_k)
 ///     F = L                                       beyond max_depth() = D_k + 2 w / k
 ///
-/// | symbol | name    | unit | range                                                        |
-/// |--------|---------|------|--------------------------------------------------------------|
-/// | L      | `limit` | N    | > 0                                                          |
+/// | symbol | name    | unit | range                                                                  |
+/// |--------|---------|------|------------------------------------------------------------------------|
+/// | L      | `limit` | N    | > 0                                                                    |
 /// | a      | `knee`  | -    | (0, 1), default 0.8: share of the limit up to which F is the law's own |
 ///
 /// A parabola joins the law and the limit with continuous slope (C1), zero at the limit; dF/dD jumps nowhere
@@ -95,7 +95,7 @@ class SaturatedForce {
 
  private:
   bool beyond_knee(S depth) const noexcept { return is_positive(depth) && depth > knee_depth_; }
-  // Way from the knee to the limit, 0 to 1.
+  // How far from the knee to the limit, 0 to 1.
   S reached(S depth) const noexcept {
     return (std::min)((depth - knee_depth_) * stiffness_ / (S(2) * room_), S(1));
   }

@@ -24,7 +24,7 @@ namespace palpate {
 /// |----------|------------------|--------|-----------------------------------------------|
 /// | D_i, F_i | `Sample`         | m, N   | (0, 0) first; both strictly increasing; finite |
 /// | s_i      | slope at sample  | N/m    | > 0                                           |
-/// | N        | template         | -      | 2 to N samples are held inside the object     |
+/// | N        | template         | -      | 2 to N samples are stored inside the object   |
 ///
 /// C1, rising everywhere, no overshoot between samples. Slopes inside: weighted harmonic mean of the
 /// neighbouring secants (as PCHIP). At the two ends: the secants continued geometrically, at most 2 secants;
@@ -137,7 +137,7 @@ class TabulatedForce {
   static void check(std::span<const Sample> samples) {
     const auto count = static_cast<double>(samples.size());
     if (samples.size() < 2) fail("TabulatedForce", "needs at least 2 samples", count);
-    if (samples.size() > N) fail("TabulatedForce", "more samples than the object holds", count);
+    if (samples.size() > N) fail("TabulatedForce", "more samples than N", count);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const S depth = samples[i].depth, force = samples[i].force;
       const auto refuse = [i](const char* rule, S value) {

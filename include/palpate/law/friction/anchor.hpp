@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-/// The tangential spring between a tool point and the place on the object where it would be unloaded.
+/// The tangential spring between a tool point and the point of the object where it would be unloaded.
 ///
 ///     D_t = (1 - n n^T)(X q - origin),   F_t = -F_ct(|D_t|) D_t/|D_t|, acting at X q
 ///

@@ -19,9 +19,9 @@
 /// | `ByComponents`  | law(|D_n|) along the normal, law(|D_t|) across (IV.B)  | the default              |
 /// | `Radial`        | law(|D|) against D, then decomposed (IV.C)             | the paper's regions      |
 ///
-/// A law says how large friction may be. The slip rule says how the origin p0 of the deformation moves when the
-/// limit is passed, the skew rule how much force a sideways stretch gives; both are types inside the law. Absent
-/// on purpose: velocity-regularised laws, because they cannot hold a tool at rest.
+/// A law says how large friction may be. The slip rule says how the origin p0 of the deformation moves when
+/// the limit is passed, the skew rule how much force a sideways stretch gives. Both are types inside the law.
+/// Absent on purpose: velocity-regularised laws, because they cannot keep a tool at rest.
 
 #include <palpate/core/absent.hpp>
 #include <palpate/core/scalar.hpp>
@@ -50,8 +50,8 @@ concept HasSkewStretch = requires(const LinearForce<S>& law, S x) {
   { K::stretch(law, x, x) } noexcept -> std::same_as<S>;
 };
 
-/// The largest stretch <= trial [m] whose tangential force is within limit(F_cn): (law, depth, F_cn at no stretch,
-/// trial, limit).
+/// The largest stretch <= trial [m] whose tangential force is within limit(F_cn): (law, depth, F_cn at no
+/// stretch, trial, limit).
 template <class K, class S>
 concept HasSkewAdmissible = requires(const LinearForce<S>& law, S x, const detail::AnyLimit<S>& limit) {
   { K::admissible(law, x, x, x, limit) } noexcept -> std::same_as<S>;
@@ -63,8 +63,8 @@ concept HasSkewEnergy = requires(const LinearForce<S>& law, S x) {
   { K::energy(law, x, x) } noexcept -> std::same_as<S>;
 };
 
-/// Skew rule: static functions, templates of any `ForceLaw`. All are continuous and rise with the stretch; force
-/// and energy are 0 at stretch 0.
+/// Skew rule: static functions, templates of any `ForceLaw`. All are continuous and rise with the stretch;
+/// force and energy are 0 at stretch 0.
 template <class K, class S>
 concept SkewRule =
     Real<S> && HasSkewForce<K, S> && HasSkewStretch<K, S> && HasSkewAdmissible<K, S> && HasSkewEnergy<K, S>;
@@ -89,15 +89,15 @@ concept HasMaxCoefficient = requires(const F& law) {
 template <class F>
 concept FrictionLimits = HasScalar<F> && HasStaticLimit<F> && HasSlidingLimit<F> && HasMaxCoefficient<F>;
 
-/// True where p0 moves by the tick's whole tangential motion, false where it moves so as to leave the stretch that
-/// `advance` gives.
+/// True where p0 moves by the tick's whole tangential motion, false where it moves so far that the stretch of
+/// `advance` is left.
 template <class R>
 concept HasShiftsByTravel = requires {
   { R::shifts_by_travel } -> std::convertible_to<bool>;
 };
 
 /// One tick of stick or slip, `advance<Skew>(friction, law, trial, state)`. A template of any `FrictionLimits`
-/// (not `FrictionLaw`, which asks for the rule itself) and any `ForceLaw`.
+/// and any `ForceLaw`; not of `FrictionLaw`, which asks for the rule itself.
 template <class R, class F>
 concept HasSlipAdvance =
     requires(const F& friction, const LinearForce<typename F::Scalar>& law,
@@ -118,7 +118,7 @@ template <class F>
 concept HasSlip = SlipRule<typename F::Slip, F>;
 
 namespace detail {
-/// Checked in the place of a friction law that is absent.
+/// Checked instead of a friction law that is absent.
 struct NoFriction {
   using Scalar = double;
   struct Skew {

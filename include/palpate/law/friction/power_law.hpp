@@ -54,7 +54,7 @@ class PowerLawFriction {
 
   explicit PowerLawFriction(const Params& params) : p_(params) {
     require_positive(p_.K, "PowerLawFriction", "K [N^(1-beta)] must be > 0 and finite");
-    // 2/3 has no exact value: a caller's 2/3, rounded down in another way than ours, is still 2/3.
+    // 2/3 has no exact value: a caller's 2/3, rounded differently from this one, is still 2/3.
     const S lowest = S(2) / S(3) - S(4) * std::numeric_limits<S>::epsilon();
     if (!is_finite(p_.beta) || !(p_.beta >= lowest && p_.beta <= S(1))) {
       fail("PowerLawFriction", "beta [-] must be in [2/3, 1]", static_cast<double>(p_.beta));

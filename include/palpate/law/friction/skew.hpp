@@ -28,9 +28,9 @@ struct ByComponents {
   template <ForceLaw L, class Limit, Real S = typename L::Scalar>
   [[nodiscard]] static S admissible(const L& law, S /*depth*/, S normal_force, S trial,
                                     const Limit& limit) noexcept {
-    const S most = limit(normal_force);
-    if (law.force(trial) <= most) return trial;  // sticks: no inverse needed
-    return (std::min)(trial, law.depth(most));
+    const S f_max = limit(normal_force);
+    if (law.force(trial) <= f_max) return trial;  // sticks: no inverse needed
+    return (std::min)(trial, law.depth(f_max));
   }
   /// Energy [J] that the stretch |D_t| [m] adds.
   template <ForceLaw L, Real S = typename L::Scalar>
@@ -54,7 +54,8 @@ struct Radial {
   }
   template <ForceLaw L, Real S = typename L::Scalar>
   [[nodiscard]] static S stretch(const L& law, S depth, S f) noexcept {
-    // The ratio law(|D|)/|D| lies between its values at depth and at |D|; doubling finds an upper end.
+    // The ratio law(|D|)/|D| lies between its values at depth and at |D|. Doubling finds an upper end, 60 times
+    // at most: by then it is 1e18 times as far.
     S high = (std::max)(law.depth(f), depth);
     for (int i = 0; i < 60 && force(law, depth, S(0), high).tangential < f; ++i) high *= S(2);
     return detail::root_below(high, [&](S t) { return force(law, depth, S(0), t).tangential - f; });

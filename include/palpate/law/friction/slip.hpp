@@ -12,9 +12,9 @@
 
 namespace palpate {
 
-/// The stretch |D_t| [m] of a contact that carries over `force` [N] with at most `energy` [J] from merged or split
-/// regions; sets state.springs. One spring with the joint force of two would store more energy than both, a
-/// gift to the user at each merger.
+/// The stretch |D_t| [m] of a contact that takes over `force` [N] with at most `energy` [J] from merged or
+/// split regions; sets state.springs. One spring with the joint force of two would store more energy than
+/// both, a gift to the user at each merger.
 template <class Skew, ForceLaw L, Real S = typename L::Scalar>
 [[nodiscard]] inline S carried_stretch(const L& law, S depth, S force, S energy,
                                        SlipState<S>& state) noexcept {
@@ -52,13 +52,13 @@ struct ReturnMapping {
     };
     const auto settle = [&] {
       if (state.springs > S(1)) {
-        const S most = limit(stuck.normal);
-        if (state.springs * stuck.tangential > most)
-          state.springs = (std::max)(most / stuck.tangential, S(1));
+        const S f_max = limit(stuck.normal);
+        if (state.springs * stuck.tangential > f_max)
+          state.springs = (std::max)(f_max / stuck.tangential, S(1));
       }
       return Skew::admissible(law, trial.depth, trial.normal_force, trial.stretch, [&](S normal_force) {
-        const S most = limit(normal_force);
-        return state.springs > S(1) ? most / state.springs : most;
+        const S f_max = limit(normal_force);
+        return state.springs > S(1) ? f_max / state.springs : f_max;
       });
     };
     const auto static_over_sliding = [&](S stretch) {

@@ -9,10 +9,10 @@
 
 namespace palpate {
 
-/// A force law for every place. `at(x)` [m, object coordinates; any finite x] is the law there, continuous in
+/// A force law for every point. `at(x)` [m, object coordinates; any finite x] is the law there, continuous in
 /// x, and `at(x).configurational_force(D)` = - dU/dx [N] the force on the tool because its energy U(D, x) at
-/// fixed depth D is less elsewhere: without it a tool that presses where the object is soft and leaves where
-/// it is hard would gain energy. `max_depth()`: no law's is less.
+/// fixed depth D is less elsewhere. Without it a tool that presses where the object is soft and leaves where
+/// it is hard would gain energy. `max_depth()` is the least of all these laws'.
 template <class M>
 concept ForceMap = HasScalar<M> && ForceLaw<typename M::Local> && HasMaxDepth<M> && std::copyable<M> &&
                    requires(const M& map, const typename M::Local& local, const Vec3<typename M::Scalar>& x,
@@ -24,7 +24,7 @@ concept ForceMap = HasScalar<M> && ForceLaw<typename M::Local> && HasMaxDepth<M>
                    };
 
 namespace detail {
-/// Checked in the place of a map where there is none. An alternative (`||`) would do, but compilers do not
+/// Checked instead of a map where there is none. An alternative (`||`) would do, but compilers do not
 /// say which member of an alternative is missing.
 struct NoMap {
   using Scalar = double;
@@ -52,7 +52,7 @@ template <class F>
 concept ForceModel = ForceLaw<typename detail::LawOf<F>::Law> && ForceMap<typename detail::LawOf<F>::Map>;
 
 namespace detail {
-/// The law at x; the law itself, untouched, where there is one for all places.
+/// The law at x; the law itself where there is one for the whole object.
 template <ForceModel F>
 [[nodiscard]] inline decltype(auto) law_at(const F& force, const Vec3<typename F::Scalar>& x) noexcept {
   if constexpr (ForceMap<F>) {

@@ -8,7 +8,7 @@
 
 namespace palpate {
 
-/// Duffing's law of one place, with how its coefficients change from there.
+/// Duffing's law at one point, with how its coefficients change from there.
 template <Real S>
 class LocalDuffing : public DuffingForce<S> {
  public:
@@ -39,8 +39,8 @@ class LocalDuffing : public DuffingForce<S> {
   Vec3<S> c1_gradient_, c3_gradient_;  // [N/m^2], [N/m^4]
 };
 
-/// c1 and c3 over the object. c1/|c3| of a blend is not below its neighbours' smallest, so none folds
-/// earlier.
+/// c1 and c3 over the object. c1/|c3| of a blend is not below the smallest of its nodes, so no blend folds
+/// earlier than all of them.
 template <Real S>
 using DuffingMap = SplineMap<LocalDuffing<S>>;
 

@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-/// Hertz's law of one place, with how its coefficients p = k^(-2/3) and C change from there.
+/// Hertz's law at one point, with how its coefficients p = k^(-2/3) and C change from there.
 template <Real S>
 class LocalHertz : public HertzForce<S> {
  public:

@@ -212,18 +212,16 @@ class Collector<SingleRegion<Sharing>, S> {
   template <ContactSurface Object, ForceModel Force>
   Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
                  std::array<RegionSum<S>, 1>& sums) noexcept {
-    LeafSum<S> lanes(X * tool.centre_of_mass());
-    bool touching = false;
+    LeafSum<S> leaves(X * tool.centre_of_mass());
     detail::for_each_touching_leaf(
         tool, X, object,
         [&](std::uint32_t begin, const PointLanes<S>& x, const PenetrationLanes<S>& in) noexcept {
-          detail::add_leaf(share_[begin / lane_count], force, x, in, lanes);
-          touching = true;
+          detail::add_leaf(share_[begin / lane_count], force, x, in, leaves);
         });
-    slot_.update(touching);
-    if (!touching) return Status::ok;
+    slot_.update(!leaves.empty());
+    if (leaves.empty()) return Status::ok;
     RegionSum<S>& sum = sums[0];
-    sum = lanes.total();
+    sum = leaves.total();
     sum.scale(Sharing::norm(static_cast<S>(sum.points)));
     return Status::contact | detail::depth_status(object, force, sum.deepest);
   }

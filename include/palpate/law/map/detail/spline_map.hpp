@@ -13,7 +13,7 @@
 namespace palpate {
 
 /// A law of two coefficients that SplineMap can vary: `Law` checks the parameters of a node, `pair()` are its
-/// coefficients, and from two coefficients and their gradients comes the law of a place.
+/// coefficients, and two coefficients and their gradients make the law at a point.
 template <class L>
 concept BlendedLaw = ForceLaw<L> && ForceLaw<typename L::Law> &&
                      requires(const typename L::Pair& c, const Vec3<typename L::Scalar>& gradient,
@@ -28,10 +28,10 @@ concept BlendedLaw = ForceLaw<L> && ForceLaw<typename L::Law> &&
 ///
 ///     c(x) = sum_i B((x - x_i) / w) c'_i,   c' = c - (1/8) (dx^2 + dy^2 + dz^2) c at the nodes
 ///
-/// | symbol | name           | unit  | range                                                                   |
-/// |--------|----------------|-------|-------------------------------------------------------------------------|
-/// | w      | `spacing`      | m     | > 0: about the length over which the object's stiffness changes         |
-/// |        | `lower, upper` | m     | box of the object; at most 10 million nodes                             |
+/// | symbol | name           | unit | range                                                           |
+/// |--------|----------------|------|-----------------------------------------------------------------|
+/// | w      | `spacing`      | m    | > 0: about the length over which the object's stiffness changes |
+/// |        | `lower, upper` | m    | box of the object; at most 10 million nodes                     |
 ///
 /// B is the product of three quadratic B-splines, dx^2 the second difference. Coefficients, their gradient
 /// and the force are continuous; the error is of order w^3 where the coefficients are smooth. Where a node is
@@ -103,22 +103,23 @@ class SplineMap {
              Vec3<S>(along_x[1], along_y[1], along_z[1]) / w_);
   }
 
-  /// No place's law has a smaller one [m].
+  /// The smallest of all nodes' laws [m]; no blend's is smaller.
   [[nodiscard]] S max_depth() const noexcept { return max_depth_; }
   [[nodiscard]] S spacing() const noexcept { return w_; }
 
  private:
   using Pair = typename L::Pair;
 
-  // The three splines along an axis that are not 0 at a place, in units of w from the first node.
+  // The three splines along an axis that are not 0 at a position, in units of w from the first node.
   struct Axis {
     std::array<std::size_t, 3> node;
     std::array<S, 3> value, slope;
     Axis() = default;
-    Axis(S place, std::size_t count) noexcept {
+    Axis(S position, std::size_t count) noexcept {
       const S last = static_cast<S>(count - 1);
-      const S held = (std::min)((std::max)(S(-2), place), last + S(2));  // beyond, all three are the rim's
-      const S nearest = std::floor(held + S(0.5L)), t = held - nearest;
+      // Clamped where all three splines are those of the rim.
+      const S clamped = (std::min)((std::max)(S(-2), position), last + S(2));
+      const S nearest = std::floor(clamped + S(0.5L)), t = clamped - nearest;
       for (std::size_t k = 0; k < 3; ++k) {
         const S i = nearest + static_cast<S>(k) - S(1);
         node[k] = static_cast<std::size_t>((std::min)((std::max)(S(0), i), last));
@@ -137,7 +138,7 @@ class SplineMap {
       for (std::size_t y = 1; y + 1 < count_[1]; ++y)
         for (std::size_t x = 1; x + 1 < count_[0]; ++x) {
           const std::size_t i = x + y * step[1] + z * step[2];
-          Pair sharp = S(1.75L) * given[i];
+          Pair sharp = S(1.75L) * given[i];  // 1 + 6/8
           for (const std::size_t to : step) sharp -= (given[i - to] + given[i + to]) / S(8);
           if (L::may_sharpen(given[i], sharp)) nodes_[i] = sharp;
         }
