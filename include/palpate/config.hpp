@@ -5,11 +5,11 @@
 /// define these macros on the command line, to replace the defaults below. The setting must be the same in
 /// every translation unit of a program.
 ///
-/// | macro                           | default                       | is called                            |
-/// |---------------------------------|-------------------------------|--------------------------------------|
-/// | PALPATE_ASSERT(condition)       | assert()                      | on broken preconditions, debug builds |
-/// | PALPATE_ON_SETUP_ERROR(message) | write to stderr, then abort() | without exceptions: bad input        |
-/// | PALPATE_NO_THREADS              | not defined                   | defined: set-up uses no threads      |
+/// | macro                           | default                       | is called                          |
+/// |---------------------------------|-------------------------------|------------------------------------|
+/// | PALPATE_ASSERT(condition)       | assert()                      | broken preconditions, debug builds |
+/// | PALPATE_ON_SETUP_ERROR(message) | write to stderr, then abort() | without exceptions: bad input      |
+/// | PALPATE_NO_THREADS              | not defined                   | defined: set-up uses no threads    |
 ///
 /// PALPATE_ON_SETUP_ERROR must not return.
 

@@ -4,9 +4,9 @@
 /// @file What every force law must keep (law/force/concept.hpp), run on an example of each policy.
 ///
 /// An example is a type with
-///     static constexpr double depth;                    // a depth [m] at which the law is well in its range
-///     static constexpr bool exact_units;                // F, dF/dD, energy commute with units of 2^n to the bit
-///     template <class S> static std::vector<S> kinks(); // where d2F/dD2 jumps [m]
+///     static constexpr double depth;      // a depth [m] at which the law is well in its range
+///     static constexpr bool exact_units;  // F, dF/dD, energy commute with units of 2^n bit for bit
+///     template <class S> static std::vector<S> kinks();  // where d2F/dD2 jumps [m]
 ///     template <class S, class T> static Law<T> make(T length, T force);
 /// `make` builds the law whose parameters are those of the example, rounded to S, in units of `length` metres
 /// and `force` newtons, so that the same law exists in long double and in other units.

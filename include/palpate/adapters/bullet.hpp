@@ -4,6 +4,7 @@
 /// @file  Candidates from Bullet: the triangle mesh shape that a host has of the object.
 /// Optional: not in palpate.hpp, and the host finds and links Bullet itself. Tested with Bullet 3.24.
 
+#include <palpate/adapters/detail/near_triangle.hpp>
 #include <palpate/core/error.hpp>
 #include <palpate/detection/candidates_from.hpp>
 

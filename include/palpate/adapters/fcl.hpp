@@ -4,6 +4,7 @@
 /// @file Candidates from FCL, the Flexible Collision Library: the tree that a host has over the object's
 /// mesh. Optional: not in palpate.hpp, and the host finds and links FCL itself. Tested with FCL 0.7.
 
+#include <palpate/adapters/detail/near_triangle.hpp>
 #include <palpate/core/error.hpp>
 #include <palpate/detection/candidates_from.hpp>
 

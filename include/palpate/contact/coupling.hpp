@@ -3,10 +3,10 @@
 
 /// @file What contact regions do to each other's force (section VI).
 ///
-/// | shipped              | F_S of a region                                    | use it when                 |
-/// |----------------------|----------------------------------------------------|-----------------------------|
-/// | `IndependentRegions` | its own force                                      | absent, the default         |
-/// | `RegionSkeletons`    | + the stress forces that the others' beams pass on | regions feel each other, VI |
+/// | shipped              | F_S of a region                                    | use it when             |
+/// |----------------------|----------------------------------------------------|-------------------------|
+/// | `IndependentRegions` | its own force                                      | absent, the default     |
+/// | `RegionSkeletons`    | + the stress forces that the others' beams pass on | regions feel each other |
 ///
 /// The forces of independent regions have a potential. The stress forces have none (docs/beams.md), so
 /// friction's promise of passivity is for independent regions only.

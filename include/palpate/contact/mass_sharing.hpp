@@ -3,10 +3,10 @@
 
 /// @file How a region shares the tool's mass among its points (section IV.C): m_i = weight(A_i) norm(n) m.
 ///
-/// | shipped        | m_i / m   | use it when                                                             |
-/// |----------------|-----------|-------------------------------------------------------------------------|
+/// | shipped        | m_i / m   | use it when                                                              |
+/// |----------------|-----------|--------------------------------------------------------------------------|
 /// | `AreaSharing`  | A_i / A_0 | the default: a point that just touches adds nothing, the force converges |
-/// | `EqualSharing` | 1 / n     | comparing with the paper: the force jumps whenever n changes            |
+/// | `EqualSharing` | 1 / n     | comparing with the paper: the force jumps whenever n changes             |
 
 #include <palpate/core/scalar.hpp>
 

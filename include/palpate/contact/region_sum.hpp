@@ -134,8 +134,8 @@ class PointForce {
   S normal_force_ = S(0);
 };
 
-/// A RegionSum in the making, a leaf of `lane_count` points at a time. Entry i of every list sums point i of all
-/// leaves; total() adds the entries up.
+/// A RegionSum in the making, a leaf of `lane_count` points at a time. Entry i of every list sums point i of
+/// all leaves; total() adds the entries up.
 template <Real S>
 class alignas(64) LeafSum {
  public:

@@ -3,11 +3,11 @@
 
 /// @file Contact topology: how many contact regions a scene can have (sections II and III).
 ///
-/// | shipped        | regions                              | tool         | use it when                      |
-/// |----------------|--------------------------------------|--------------|----------------------------------|
-/// | `SinglePoint`  | 1, of one point                      | `PointTool`  | a stylus tip; the cheapest       |
-/// | `SingleRegion` | 1, all points that touch             | `ToolPoints` | a tool that touches in one patch |
-/// | `Regions<N>`   | up to N, clustered by the distance r | `ToolPoints` | the general case                 |
+/// | shipped        | regions                              | tool         | use it when                |
+/// |----------------|--------------------------------------|--------------|----------------------------|
+/// | `SinglePoint`  | 1, of one point                      | `PointTool`  | a stylus tip; the cheapest |
+/// | `SingleRegion` | 1, all points that touch             | `ToolPoints` | a tool with one patch      |
+/// | `Regions<N>`   | up to N, clustered by the distance r | `ToolPoints` | the general case           |
 ///
 /// With regions, the surplus over N joins the nearest region and `Status::region_overflow` is set. The normal
 /// force is a sum over points and does not depend on the clustering; only friction does.

@@ -37,8 +37,8 @@ template <Real S>
 }  // namespace detail
 
 /// Calls visit(begin, count, x) for every leaf of the tool's tree with a point that may be inside the
-/// surface: `count` <= lane_count points from `begin` on, with x their positions in object coordinates [m]. No
-/// equation.
+/// surface: `count` <= lane_count points from `begin` on, with x their positions in object coordinates [m].
+/// No equation.
 ///
 /// Precondition: X is usable (core/pose.hpp). A ball that surface.separated() says is apart is left out with
 /// all its points; so a tool far away costs one such test, and the rest costs in proportion to what touches:

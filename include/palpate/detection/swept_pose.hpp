@@ -11,7 +11,7 @@
 
 namespace palpate {
 
-/// What SweptPose gives a tick: the pose to use, and Status::reached_back where it is not the device's.
+/// What SweptPose gives a tick: the pose to use, and Status::held_back where it is not the device's.
 template <Real S>
 struct ReachedPose {
   Pose<S> pose;
@@ -30,22 +30,22 @@ struct ReachedPose {
 ///
 /// The tool's centre goes along a line and it turns at an even rate. Conservative advancement [mirtich1996]:
 /// depth changes by no more than the path length of a point, so a tool whose deepest point is at delta may go
-/// on by L - delta without a query. Nearer to L it tries steps of L / 4 and takes those that end no deeper than
-/// L, so no point gets deeper than 1.25 L. Whatever crosses a part of half thickness 1.25 L would be that deep
-/// in between, and is stopped.
+/// on by L - delta without a query. Nearer to L it tries steps of L / 4 and takes those that end no deeper
+/// than L, so no point gets deeper than 1.25 L. Whatever crosses a part of half thickness 1.25 L would be
+/// that deep in between, and is stopped.
 ///
-/// Why the pose is held back instead of answered with a larger force: past the middle of a thin part the closest
-/// face is the far one, so depth and force point on through it. Held back where it came in, depth is measured from the face
-/// that the tool entered, and the force stays at most at the law's value for L.
+/// Why the pose is held back instead of answered with a larger force: past the middle of a thin part the
+/// closest face is the far one, so depth and force point on through it. Held back where it came in, depth is
+/// measured from the face that the tool entered, and the force stays at most at the law's value for L.
 ///
-/// L is one for the whole object, so a tool is also held back where it goes deeper into a thick part: for thin
-/// objects, or with L as deep as you allow anyway. While it is held back the tool does not slide along the face.
-/// It moves again when the straight line to the device's pose does not lead deeper. One that grazes the
-/// surface over more than about 30 L in one tick runs out of queries, stops there for this tick and goes on
-/// in the next.
+/// L is one for the whole object, so a tool is also held back where it goes deeper into a thick part: for
+/// thin objects, or with L as deep as you allow anyway. While it is held back the tool does not slide along
+/// the face. It moves again when the straight line to the device's pose does not lead deeper. One that grazes
+/// the surface over more than about 30 L in one tick runs out of queries, stops there for this tick and goes
+/// on in the next.
 ///
-/// advance() is noexcept, without heap; at most 33 queries, each at most a closest point for each node
-/// and point of the tool. In free air it costs one separation test; after a query, nothing until the tool has
+/// advance() is noexcept, without heap; at most 33 queries, each at most a closest point for each node and
+/// point of the tool. In free air it costs one separation test; after a query, nothing until the tool has
 /// moved by L - delta. A device pose that is not usable is handed on to the solver, which refuses it, and the
 /// next usable one is taken as it is; so is the first.
 template <Real S>
@@ -131,7 +131,7 @@ class SweptPose {
     }
     if (s > S(0)) reached_ = motion.at(s);
     clear_ = S(0);
-    return {reached_, Status::reached_back};
+    return {reached_, Status::held_back};
   }
 
   [[nodiscard]] ReachedPose<S> arrive(const Pose<S>& X, S clear) noexcept {

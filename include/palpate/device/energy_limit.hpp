@@ -20,16 +20,16 @@ namespace palpate {
 ///     E += -1/2 (F + F') . dx          put in by the hand; F of this tick, F' of the last; torques likewise
 ///     F := s F,   s = min(1, E / U),   U = 1/4 sum F_n D_n min(1, A_0 / A)
 ///
-/// | symbol | name                     | unit | range                                                       |
-/// |--------|--------------------------|------|-------------------------------------------------------------|
-/// | A_0    | `Params::contact_area`   | m^2  | the tool's, as ToolPoints has it; not used for one point    |
-/// |        | `Params::centre_of_mass` | m    | of the tool, in tool coordinates                            |
+/// | symbol | name                     | unit | range                                                    |
+/// |--------|--------------------------|------|----------------------------------------------------------|
+/// | A_0    | `Params::contact_area`   | m^2  | the tool's, as ToolPoints has it; not used for one point |
+/// |        | `Params::centre_of_mass` | m    | of the tool, in tool coordinates                         |
 ///
-/// U is no more than the energy that evenly pressed contacts store by a force law from linear to cubic. While E
-/// is no less, as in passive scenes, the wrench is passed on bit for bit. Where energy was made, the force fades
-/// as the tool leaves, without a jump: with depth at most three times as fast as a linear law's, down to 0 with
-/// U. Besides, no tick may spend more than E. E never falls below minus half a tick's work, and that is paid
-/// back first. So from one moment without contact to any later time
+/// U is no more than the energy that evenly pressed contacts store by a force law from linear to cubic. While
+/// E is no less, as in passive scenes, the wrench is passed on bit for bit. Where energy was made, the force
+/// fades as the tool leaves, without a jump: with depth at most three times as fast as a linear law's, down
+/// to 0 with U. Besides, no tick may spend more than E. E never falls below minus half a tick's work, and
+/// that is paid back first. So from one moment without contact to any later time
 ///
 ///     work on the hand <= 1/2 max |F . dx|
 ///

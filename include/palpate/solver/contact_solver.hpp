@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  One servo tick, from the tool's pose to the wrench on it. Only here do all rooms of the force meet; the
-/// include list is the data flow.
+/// @file One servo tick, from the tool's pose to the wrench on it. Only here do all rooms of the force meet;
+/// the include list is the data flow.
 
 // clang-format off
 #include <palpate/core/pose.hpp>

@@ -16,8 +16,8 @@
 namespace palpate {
 
 namespace detail {
-/// Cube root of x > 0 within 3.2 %: a third of the exponent, and of the mantissa on a chord. The constants are
-/// two thirds of the exponent's bias, less what makes the errors above and below equal.
+/// Cube root of x > 0 within 3.2 %: a third of the exponent, and of the mantissa on a chord. The constants
+/// are two thirds of the exponent's bias, less what makes the errors above and below equal.
 template <Real S>
 [[nodiscard]] inline S rough_cbrt(S x) noexcept {
   if (x < (std::numeric_limits<S>::min)()) return std::cbrt(x);  // has no exponent
@@ -150,8 +150,8 @@ class DuffingForce {
     if (p_.c3 < S(0) && force > S(0.75) * max_force_) return depth_near_fold(force);
     // D = D0 y with a y + b y^3 = 1. D0 is the min of the roots of the linear and of the cubic law alone, the
     // cubic one within 3.2 %. The root y lies in [0.66, 1.14], a and b are of order 1 at most, and the fitted
-    // polynomials below are within 2.7 % of it. Two of Halley's steps, of cubic convergence, do the rest. a and
-    // b come from the rounded D0, so its error does not count.
+    // polynomials below are within 2.7 % of it. Two of Halley's steps, of cubic convergence, do the rest. a
+    // and b come from the rounded D0, so its error does not count.
     S start = per_c1_ <= (std::numeric_limits<S>::max)() ? force * per_c1_
               : p_.c1 > S(0)                             ? force / p_.c1  // subnormal
                                                          : std::numeric_limits<S>::infinity();

@@ -21,7 +21,7 @@ namespace palpate {
 /// |--------|--------------|---------|-------------------------------------------------------------------|
 /// | D      | argument     | m       | any; D <= 0 and NaN give 0                                        |
 /// | k      | `k`          | N/m^1.5 | > 0: (4/3) E/(1-nu^2) sqrt(R), R the relative radius of curvature |
-/// | C      | `compliance` | m/N     | of the body as a whole; 0: a half-space, < 0: a layer on a stiff base |
+/// | C      | `compliance` | m/N     | of the whole body; 0: half-space, < 0: layer on a stiff base      |
 ///
 /// F = k D^(3/2) where D is small, D/C where it is large. dF/dD is 0 at D = 0. Within 8 epsilon of the exact
 /// root. With C < 0 D ends before F does: from e = C k sqrt(D) = -0.3 on, F = 2.06 k D^(3/2). Bad parameters:

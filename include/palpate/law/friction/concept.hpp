@@ -3,11 +3,11 @@
 
 /// @file What a friction law, a slip rule and a skew rule must offer. Read this before writing one.
 ///
-/// | friction law       | limit                  | use it when                                               |
-/// |--------------------|------------------------|-----------------------------------------------------------|
-/// | `PowerLawFriction` | f_max = K F_n^beta     | the paper's (Howell and Mazur): elastic or fibrous solids |
-/// | `CoulombFriction`  | f_max = mu_S F_n       | beta = 1: dry, hard or rough pairs                        |
-/// | `Frictionless`     | 0                      | absent: no state, no byte, no instruction                 |
+/// | friction law       | limit              | use it when                                               |
+/// |--------------------|--------------------|-----------------------------------------------------------|
+/// | `PowerLawFriction` | f_max = K F_n^beta | the paper's (Howell and Mazur): elastic or fibrous solids |
+/// | `CoulombFriction`  | f_max = mu_S F_n   | beta = 1: dry, hard or rough pairs                        |
+/// | `Frictionless`     | 0                  | absent: no state, no byte, no instruction                 |
 ///
 /// | slip rule       | when the limit is passed, p0 moves ...                 | use it when              |
 /// |-----------------|--------------------------------------------------------|--------------------------|
@@ -96,8 +96,8 @@ concept HasShiftsByTravel = requires {
   { R::shifts_by_travel } -> std::convertible_to<bool>;
 };
 
-/// One tick of stick or slip, `advance<Skew>(friction, law, trial, state)`. A template of any `FrictionLimits`
-/// and any `ForceLaw`; not of `FrictionLaw`, which asks for the rule itself.
+/// One tick of stick or slip, `advance<Skew>(friction, law, trial, state)`. A template of any
+/// `FrictionLimits` and any `ForceLaw`; not of `FrictionLaw`, which asks for the rule itself.
 template <class R, class F>
 concept HasSlipAdvance =
     requires(const F& friction, const LinearForce<typename F::Scalar>& law,

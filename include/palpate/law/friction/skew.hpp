@@ -54,8 +54,8 @@ struct Radial {
   }
   template <ForceLaw L, Real S = typename L::Scalar>
   [[nodiscard]] static S stretch(const L& law, S depth, S f) noexcept {
-    // The ratio law(|D|)/|D| lies between its values at depth and at |D|. Doubling finds an upper end, 60 times
-    // at most: by then it is 1e18 times as far.
+    // The ratio law(|D|)/|D| lies between its values at depth and at |D|. Doubling finds an upper end, 60
+    // times at most: by then it is 1e18 times as far.
     S high = (std::max)(law.depth(f), depth);
     for (int i = 0; i < 60 && force(law, depth, S(0), high).tangential < f; ++i) high *= S(2);
     return detail::root_below(high, [&](S t) { return force(law, depth, S(0), t).tangential - f; });

@@ -13,8 +13,8 @@ namespace palpate {
 namespace detail {
 /// Root of g on [0, high], or the lower end of an epsilon around it. g changes sign once there, from <= 0 to
 /// g(high) > 0. False position with the stale end's value reduced [anderson1973]. The bracket is halved where
-/// false position has not halved it in four steps, or where g is 0 at the lower end, as it may be at 0 itself.
-/// At most 240 steps: four for each halving down to a double's epsilon, and some.
+/// false position has not halved it in four steps, or where g is 0 at the lower end, as it may be at 0
+/// itself. At most 240 steps: four for each halving down to a double's epsilon, and some.
 template <Real S, class G>
 [[nodiscard]] S root_below(S high, const G& g) noexcept {
   constexpr S epsilon = std::numeric_limits<S>::epsilon();
