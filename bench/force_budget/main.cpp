@@ -10,8 +10,8 @@
 /// row by row.
 ///
 /// The tool goes round the same path of 256 poses again and again, and a solver does the same work in the
-/// same place each time. The least time of a place over all rounds is the solver's own, without the machine:
-/// OUTPUT_machine.csv has the median place and the slowest one (own_p50_us, own_max_us; empty for fewer than
+/// same position each time. The least time of a position over all rounds is the solver's own, without the machine:
+/// OUTPUT_machine.csv has the median position and the slowest one (own_p50_us, own_max_us; empty for fewer than
 /// 8 rounds).
 ///
 /// Budgets: 30 us for 99.9 % of all ticks up to 1,000 points and 8 regions; median 0.1 us for one point and 1
@@ -35,7 +35,7 @@ namespace {
 using namespace bench;
 
 constexpr std::int64_t budget = 30000;  // [ns]
-constexpr std::size_t places = 256;     // of the tool's path
+constexpr std::size_t positions = 256;  // of the tool's path
 
 struct Empty {
   long turns = 1;
@@ -66,14 +66,14 @@ struct Scene {
   double force = 0;
   Empty empty = {};
   TimeHistogram time = {}, empty_time = {};
-  std::array<std::int64_t, places> least = {};  // time at each place of the path [ns]
+  std::array<std::int64_t, positions> least = {};  // time at each position of the path [ns]
 
-  // Median and largest of the least times [us]; 0 where each place was met too few times.
+  // Median and largest of the least times [us]; 0 where each position was met too few times.
   [[nodiscard]] std::array<double, 2> own() const {
-    if (ticks < 8 * places) return {};
+    if (ticks < 8 * positions) return {};
     auto sorted = least;
     std::sort(sorted.begin(), sorted.end());
-    return {1e-3 * static_cast<double>(sorted[places / 2]), 1e-3 * static_cast<double>(sorted.back())};
+    return {1e-3 * static_cast<double>(sorted[positions / 2]), 1e-3 * static_cast<double>(sorted.back())};
   }
 };
 
@@ -96,7 +96,7 @@ struct Bench {
                       : points == 100 ? 1.0
                                       : 30.0,
                       [solver, poses](std::size_t k) {
-                        const Pose<S>& X = (*poses)[k % places];
+                        const Pose<S>& X = (*poses)[k % positions];
                         if constexpr (Solver::is_rate_dependent) {
                           return static_cast<double>(solver->tick(X, S(1e-3)).wrench.force.y());
                         } else {
@@ -217,9 +217,9 @@ struct Bench {
   void warm_up(Scene& s) const {
     TimeHistogram time;
     s.force = 0;
-    for (std::size_t k = 0; k < places; ++k) {
+    for (std::size_t k = 0; k < positions; ++k) {
       const auto begin = Clock::now();
-      s.force += s.tick(k) / places;
+      s.force += s.tick(k) / positions;
       time.add(nanoseconds(begin, Clock::now()) - clock);
       s.most_regions = (std::max)(s.most_regions, s.regions());
     }
@@ -243,7 +243,7 @@ struct Bench {
     const std::int64_t ours = nanoseconds(begin, between) - clock, theirs = nanoseconds(between, end) - clock;
     s.time.add(ours);
     s.empty_time.add(theirs);
-    s.least[k % places] = (std::min)(s.least[k % places], ours);
+    s.least[k % positions] = (std::min)(s.least[k % positions], ours);
     if (theirs > budget) ++s.empty_over;
     if (ours > budget) {
       ++s.over;
@@ -346,7 +346,7 @@ int main(int argc, char** argv) {
       "force budget, %s: %s, %d of %d rows over it (median or 99.9 %%); in %d more the machine was held up\n",
       scalar_name<SCALAR>, bench.offenders == 0 ? "PASS" : "OFFENDERS", bench.offenders, bench.rows,
       bench.held_up);
-  std::printf("slowest place of all paths, %s, least of its rounds: %.3f us (budget %g): %s\n",
+  std::printf("slowest position of all paths, %s, least of its rounds: %.3f us (budget %g): %s\n",
               scalar_name<SCALAR>, bench.slowest, us(budget), bench.slowest_row.c_str());
   return 0;
 }

@@ -140,7 +140,8 @@ void shape(const Output& out, const std::string& name, Model& model, const MeshD
   model.write_rest(buffer);
   Row row{"m"};
   for (std::size_t k = 0; k < 20; ++k) {
-    std::array<ContactState<double>, 2> contacts{place_on_path(k, 20).state, place_on_path(k + 10, 20).state};
+    std::array<ContactState<double>, 2> contacts{contact_on_path(k, 20).state,
+                                                 contact_on_path(k + 10, 20).state};
     for (ContactState<double>& c : contacts) {
       c.force = 500 * c.normal;
       c.normal_force = 0.5;
@@ -182,7 +183,7 @@ void shapes(const Output& out) {
     ResponseTick<4> tick(*field);
     Row forces{"N"};
     for (std::size_t k = 0; k < 60; ++k) {
-      const Place at = place_on_path(k, 60);
+      const PathContact at = contact_on_path(k, 60);
       std::array<Vec3<double>, 2> force, torque;
       forces.add(
           double(static_cast<unsigned>(tick.solve(at.patches.data(), 2, force.data(), torque.data()))));

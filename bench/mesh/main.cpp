@@ -64,17 +64,17 @@ int main(int argc, char** argv) {
     // One patch of vertices, as under a contact; then all.
     TriangleBvh<S> tree(mesh);
     std::vector<std::uint32_t> which;
-    std::vector<V> places, all = mesh.vertices;
+    std::vector<V> positions, all = mesh.vertices;
     std::vector<std::pair<S, std::uint32_t>> nearest;
     for (std::uint32_t v = 0; v < all.size(); ++v) nearest.push_back({(all[v] - all[0]).squaredNorm(), v});
     std::sort(nearest.begin(), nearest.end());
     for (std::size_t i = 0; i < all.size() / 100; ++i) which.push_back(nearest[i].second);
-    for (const std::uint32_t v : which) places.push_back(all[v] * 0.99);
+    for (const std::uint32_t v : which) positions.push_back(all[v] * 0.99);
     for (V& v : all) v *= 0.99;
     std::vector<double> part, whole;
     for (int i = 0; i < 20; ++i) {
       start = Clock::now();
-      tree.move(which, places);
+      tree.move(which, positions);
       part.push_back(since(start));
       start = Clock::now();
       tree.move_all(all);

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# The bodies of tests/support/response_bodies.hpp, each pressed by a patch (shape_error/bodies.hpp), held at rest below.
+# The bodies of tests/support/response_bodies.hpp, each pressed by a patch (shape_error/bodies.hpp), fixed below.
 set terminal pngcairo size 1500,760 font "Sans,11" background rgb "white"
 set output "bodies.png"
 array names[8] = ["torus", "L", "plate, lying", "plate, standing", "two spheres", "box", "bowl", "block with a hole"]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# Rows: bodies. Columns: how far the surface moves, where two models are wrong, a section. In percent of the tool's way.
+# Rows: bodies. Columns: how far the surface moves, where two models are wrong, a section. In percent of the tool's displacement.
 set terminal pngcairo size 1500,800 font "Sans,11" background rgb "white"
 set output "shape_error.png"
 fields = "shape_error.tsv"

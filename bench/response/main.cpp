@@ -2,12 +2,12 @@
 
 /// @file What a response field costs, in the tick and at set-up: docs/accuracy.md, chapter Cost.
 ///
-/// The ellipsoid of half axes 60, 40, 40 mm, held where y <= -36 mm, E = 1.5 MPa, nu = 0.49, the default
-/// number of solve vertices; contacts move along path.hpp's path, so that no tick has those of the one
+/// The ellipsoid of half axes 60, 40, 40 mm, fixed where y <= -36 mm, E = 1.5 MPa, nu = 0.49, the default
+/// number of boundary element vertices; contacts move along path.hpp's path, so that no tick has those of the one
 /// before. Steps take turns, so that all see the same machine; a turn is six times along the path, so that a
 /// step finds the caches as it left them.
 ///
-///     force                solve(), which also finds the place; "after a field": a field drawn just before used the caches
+///     force                solve(), which also finds the position; "after a field": a field drawn just before used the caches
 ///     field                displace() into packed floats, after a solve() that is not timed
 ///     deformation model    ResponseFieldDeformation::write(): force, field, positions, normals if asked for
 ///     memcpy               of as many bytes as the positions have
@@ -38,7 +38,7 @@ namespace {
 
 using namespace bench;
 using Floats = std::span<const float>;
-constexpr std::size_t places = 300, laps = 6, rounds = 5;
+constexpr std::size_t positions = 300, laps = 6, rounds = 5;
 
 struct Step {
   const char* name;
@@ -60,9 +60,9 @@ struct Step {
     static const std::int64_t clock = clock_cost();
     for (std::size_t k = 0; k < count; ++k) {
       const palpate::test::HeapCount heap;
-      if (before) before(k % places);
+      if (before) before(k % positions);
       const auto begin = Clock::now();
-      const double value = work(k % places);
+      const double value = work(k % positions);
       const std::int64_t ns = nanoseconds(begin, Clock::now()) - clock;
       allocations += heap.allocations();
       times.push_back(1e-3 * double(ns));
@@ -97,8 +97,8 @@ int main(int argc, char** argv) {
   const auto highest = std::ranges::max_element(shown.vertices, {}, [](const auto& p) { return p.y(); });
   // The highest vertex in packed positions.
   const auto top_y = 3 * static_cast<std::size_t>(highest - shown.vertices.begin()) + 1;
-  std::vector<Place> path;
-  for (std::size_t k = 0; k < places; ++k) path.push_back(place_on_path(k, places));
+  std::vector<PathContact> path;
+  for (std::size_t k = 0; k < positions; ++k) path.push_back(contact_on_path(k, positions));
 
   std::shared_ptr<const ResponseField> field;
   std::optional<ResponseField> loaded;
@@ -192,9 +192,9 @@ int main(int argc, char** argv) {
       {"field of a turned patch", 1, size, "float", 0, "mean_at_top_mm", displace, solve_turned, u},
       {"field", 1, size, "float", 60, "mean_at_top_mm", displace, solve(1), u},
       {"field", 2, size, "float", 100, "mean_at_top_mm", displace, solve(2), u}};
-  for (Step& step : ticks) step.times.reserve(places * laps * rounds);
+  for (Step& step : ticks) step.times.reserve(positions * laps * rounds);
   for (std::size_t r = 0; r < rounds; ++r)
-    for (Step& step : ticks) step.run(places * laps);
+    for (Step& step : ticks) step.run(positions * laps);
 
   char text[256];
   const auto report = [&](const Step& s) {

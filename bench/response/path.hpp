@@ -13,18 +13,18 @@
 
 namespace bench {
 
-struct Place {
+struct PathContact {
   std::array<ResponseContact<double>, 2> patches;  // of 5 mm radius, 36 mm or more apart
   ResponseContact<double> turned;                  // the first, tilted and twisted
   SphereContact<double> ball;                      // of 10 mm radius, where the first is
   ContactState<double> state;                      // the first, as a contact solver hands it over
 };
 
-/// One of `places`, with a depth and a direction of its own.
-inline Place place_on_path(std::size_t k, std::size_t places) {
+/// One of `positions`, with a depth and a direction of its own.
+inline PathContact contact_on_path(std::size_t k, std::size_t positions) {
   using V = Vec3<double>;
   const auto body = ellipsoid<double>();
-  const double radius = 5e-3, angle = 2 * std::numbers::pi * double(k) / double(places),
+  const double radius = 5e-3, angle = 2 * std::numbers::pi * double(k) / double(positions),
                depth = 1.5e-3 + 0.5e-3 * std::sin(5 * angle);
   const auto at = [](double phi) {
     const double s = 0.45 + 0.15 * std::sin(3 * phi);
@@ -35,7 +35,7 @@ inline Place place_on_path(std::size_t k, std::size_t places) {
     return ResponseContact<double>{p, normal, radius, depth * (0.4 * along - normal),
                                    turn * (0.2 * along + 0.1 * normal)};
   };
-  Place out{};
+  PathContact out{};
   out.patches = {patch(angle, 0), patch(angle + std::numbers::pi, 0)};
   out.turned = patch(angle, 1);
   const auto& first = out.patches[0];

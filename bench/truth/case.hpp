@@ -103,12 +103,12 @@ inline palpate::MeshData<double> read_obj(const std::string& text) {
   return mesh;
 }
 
-/// A patch of the surface that is moved by depth * factor * direction, and turned about its place by depth *
+/// A patch of the surface that is moved by depth * factor * direction, and turned about its position by depth *
 /// turn.
 struct Patch {
-  V place, normal, direction;  ///< normal: outward
-  double radius, factor;       ///< [m], -
-  V turn = V::Zero();          ///< [rad/m]
+  V position, normal, direction;  ///< normal: outward
+  double radius, factor;          ///< [m], -
+  V turn = V::Zero();             ///< [rad/m]
 };
 inline std::vector<Patch> read_patches(const std::string& meta) {
   std::vector<Patch> patches;

@@ -4,7 +4,7 @@
 ///
 ///     make_reference NAME CASE_DIR fineness     without arguments: the names
 ///
-/// Stuck flat patches on rubber, pressed by their depth and turned, or a frictionless ball. Needs gmsh as a
+/// Bonded flat punches on rubber, pressed by their depth and turned, or a frictionless ball. Needs gmsh as a
 /// command. Writes what truth_cases reads into CASE_DIR: meta.json, surface.obj, vertices.csv,
 /// displacement.csv, displacement_linear.csv (small strain), force.csv, force_linear.csv, with the torques
 /// about the patches' middles, where they have moved to. Vertices: the elements' nodes on the surface.
@@ -52,9 +52,9 @@ Patch twisted(Patch p, double turn) {
 // On an ellipsoid, `angle` degrees (of its parameter) from the top towards x.
 Patch on_flank(const V& axes, double angle, double radius, double lean = 0) {
   const double t = angle * std::acos(-1.0) / 180;
-  const V place(axes.x() * std::sin(t), axes.y() * std::cos(t), 0);
-  const V normal = place.cwiseQuotient(axes.cwiseProduct(axes)).normalized();
-  return {place, normal, leaning(normal, V(normal.y(), -normal.x(), 0), lean), radius, 1};
+  const V position(axes.x() * std::sin(t), axes.y() * std::cos(t), 0);
+  const V normal = position.cwiseQuotient(axes.cwiseProduct(axes)).normalized();
+  return {position, normal, leaning(normal, V(normal.y(), -normal.x(), 0), lean), radius, 1};
 }
 
 std::vector<Case> cases() {
@@ -132,9 +132,9 @@ std::vector<Case> cases() {
 
 // The surface: nodes of the elements' outer faces, four triangles to a face, mirrored to the whole body.
 struct Surface {
-  std::vector<int> node;  // of each vertex
-  std::vector<V> sign;    // mirrored along an axis: -1
-  std::vector<V> place;   // [mm]
+  std::vector<int> node;    // of each vertex
+  std::vector<V> sign;      // mirrored along an axis: -1
+  std::vector<V> position;  // [mm]
   std::vector<std::array<int, 3>> triangles;
   std::vector<double> area;               // [mm^2]
   std::vector<char> outer;                // by node: is it on the surface, mirrors aside?
@@ -177,7 +177,7 @@ Surface surface_of(const Tetrahedra& mesh, const Body& body) {
           if (fresh) {
             s.node.push_back(n[i]);
             s.sign.push_back(V(kx ? -1 : 1, 1, kz ? -1 : 1));
-            s.place.push_back(p.cwiseProduct(s.sign.back()));
+            s.position.push_back(p.cwiseProduct(s.sign.back()));
           }
           vertex[i] = at->second;
         }
@@ -192,7 +192,8 @@ Surface surface_of(const Tetrahedra& mesh, const Body& body) {
   s.area.assign(s.node.size(), 0);
   for (const auto& t : s.triangles)
     for (int c : t)
-      s.area[c] += (s.place[t[1]] - s.place[t[0]]).cross(s.place[t[2]] - s.place[t[0]]).norm() / 6;
+      s.area[c] +=
+          (s.position[t[1]] - s.position[t[0]]).cross(s.position[t[2]] - s.position[t[0]]).norm() / 6;
   return s;
 }
 
@@ -215,7 +216,7 @@ std::vector<int> regions(const Case& c, const Tetrahedra& mesh, const Surface& s
     if (!surface.outer[n]) continue;
     if (mesh.nodes[n].y() <= held) region[n] = -1;
     for (std::size_t p = 0; p < c.patches.size() && !c.ball; ++p)
-      if ((mesh.nodes[n] - c.patches[p].place).norm() <= c.patches[p].radius * (1 + 1e-4))
+      if ((mesh.nodes[n] - c.patches[p].position).norm() <= c.patches[p].radius * (1 + 1e-4))
         region[n] = static_cast<int>(p) + 1;
   }
   return region;
@@ -226,10 +227,10 @@ void write_surface(const Case& c, const Surface& surface, const std::vector<int>
   File obj(folder + "/surface.obj", ""),
       vertices(folder + "/vertices.csv", "vertex,x,y,z,area_m2,region,r_over_a\n");
   for (std::size_t v = 0; v < surface.node.size(); ++v) {
-    const V p = surface.place[v] / 1e3;
+    const V p = surface.position[v] / 1e3;
     double ratio = 1e300;
     for (const Patch& patch : c.patches)
-      ratio = (std::min)(ratio, (surface.place[v] - patch.place).norm() / patch.radius);
+      ratio = (std::min)(ratio, (surface.position[v] - patch.position).norm() / patch.radius);
     std::fprintf(obj.file, "v %.10g %.10g %.10g\n", p.x(), p.y(), p.z());
     std::fprintf(vertices.file, "%zu,%.10g,%.10g,%.10g,%.6g,%d,%.6g\n", v, p.x(), p.y(), p.z(),
                  surface.area[v] / 1e6, region[surface.node[v]], ratio);
@@ -243,13 +244,13 @@ void write_meta(const Case& c, const std::vector<double>& reached, const std::st
   const auto list = [](const V& v) { return text('[', v.x(), ", ", v.y(), ", ", v.z(), ']'); };
   std::string patches, depths;
   for (const Patch& p : c.patches)
-    patches += text(patches.empty() ? "" : ",\n", "{\"centre_m\": ", list(p.place / 1e3),
+    patches += text(patches.empty() ? "" : ",\n", "{\"centre_m\": ", list(p.position / 1e3),
                     ", \"radius_m\": ", p.radius / 1e3, ", \"direction\": ", list(p.direction),
                     ", \"inward_normal\": ", list(-p.normal), ", \"depth_factor\": ", p.factor,
                     ", \"turn_per_m\": ", list(p.turn * 1e3), '}');
   const Patch& first = c.patches[0];
   const std::string ball = text("\"indenter\": {\"radius_m\": ", first.radius / 1e3,
-                                ", \"first_touch_point_m\": ", list(first.place / 1e3),
+                                ", \"first_touch_point_m\": ", list(first.position / 1e3),
                                 ", \"inward_normal\": ", list(-first.normal), "},\n");
   for (double depth : reached) depths += text(depths.empty() ? "" : ", ", depth / 1e3);
   std::string held;
@@ -343,13 +344,13 @@ class Reference {
     RigidSphere sphere{V::Zero(), first.radius, 100 * case_.E, {}};
     for (const auto& face : surface_.faces)
       if (std::all_of(face.begin(), face.end(), [&](int n) {
-            return region_[n] == 0 && (mesh_.nodes[n] - first.place).norm() < 1.3 * sphere.radius;
+            return region_[n] == 0 && (mesh_.nodes[n] - first.position).norm() < 1.3 * sphere.radius;
           }))
         sphere.faces.push_back(face);
     Eigen::VectorXd speed = Eigen::VectorXd::Zero(rubber_.state().size());  // by depth, of the last step
     const auto press = [&](double from, double by) {
       const Eigen::VectorXd before = rubber_.state();
-      sphere.centre = first.place + (sphere.radius - from - by) * first.normal;
+      sphere.centre = first.position + (sphere.radius - from - by) * first.normal;
       if (!rubber_.settle(sphere, before + by * speed)) return false;
       speed = (rubber_.state() - before) / by;
       return true;
@@ -402,7 +403,7 @@ class Reference {
     for (std::size_t n = 0; n < mesh_.nodes.size(); ++n) {
       if (region_[n] <= 0) continue;
       const Patch& p = case_.patches[static_cast<std::size_t>(region_[n] - 1)];
-      const V u = by(p, V(mesh_.nodes[n] - p.place));
+      const V u = by(p, V(mesh_.nodes[n] - p.position));
       for (int k = 0; k < 3; ++k)
         if (!half_[k]) d[3 * static_cast<Eigen::Index>(n) + k] = u[k];
     }
@@ -413,7 +414,8 @@ class Reference {
     const Patch& p = case_.patches[patch];
     for (std::size_t n = 0; n < mesh_.nodes.size(); ++n) {
       if (region_[n] != static_cast<int>(patch) + 1) continue;
-      const V f = rubber_.forces().segment<3>(3 * static_cast<Eigen::Index>(n)), r = mesh_.nodes[n] - p.place;
+      const V f = rubber_.forces().segment<3>(3 * static_cast<Eigen::Index>(n)),
+              r = mesh_.nodes[n] - p.position;
       out.force += f;
       out.torque += (r + moved(p, r, depth) - moved(p, V::Zero(), depth)).cross(f);
     }

@@ -164,26 +164,26 @@ class Rubber {
     constexpr double a[2] = {0.0927352503108912264, 0.3108859192633005},
                      wa[2] = {0.0734930431163619495, 0.112687925718015851};
     constexpr double c = 0.0455037041256496495, wc = 0.0425460207770814664;
-    std::array<Eigen::Vector4d, points_> place;
+    std::array<Eigen::Vector4d, points_> position;
     std::array<double, points_> weight;
     int q = 0;
     for (int k : {0, 1})
       for (int i = 0; i < 4; ++i, ++q) {
-        place[q].setConstant(a[k]);
-        place[q][i] = 1 - 3 * a[k];
+        position[q].setConstant(a[k]);
+        position[q][i] = 1 - 3 * a[k];
         weight[q] = wa[k];
       }
     for (int i = 0; i < 4; ++i)
       for (int j = i + 1; j < 4; ++j, ++q) {
-        place[q].setConstant(0.5 - c);
-        place[q][i] = place[q][j] = c;
+        position[q].setConstant(0.5 - c);
+        position[q][i] = position[q][j] = c;
         weight[q] = wc;
       }
     constexpr int ends[6][2] = {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {2, 3}, {1, 3}};
     data_.resize(mesh_.elements.size());
     for (std::size_t e = 0; e < data_.size(); ++e)
       for (q = 0; q < points_; ++q) {
-        const Eigen::Vector4d& L = place[q];
+        const Eigen::Vector4d& L = position[q];
         Eigen::Matrix<double, 10, 4> by_L = Eigen::Matrix<double, 10, 4>::Zero();
         for (int i = 0; i < 4; ++i) by_L(i, i) = 4 * L[i] - 1;
         for (int m = 0; m < 6; ++m) {

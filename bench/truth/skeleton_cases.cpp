@@ -67,7 +67,7 @@ int run(const Body& body, const Case& test, const char* output) {
       contacts[c].area = std::acos(-1.0) * patch.radius * patch.radius;
       contacts[c].normal = patch.normal;
       contacts[c].displacement = depth * patch.factor * patch.direction;
-      contacts[c].centre = patch.place + contacts[c].displacement;
+      contacts[c].centre = patch.position + contacts[c].displacement;
       contacts[c].force = -force.at(c);  // on the tool
       contacts[c].normal_force = -force.at(c).dot(patch.normal);
     }
@@ -91,7 +91,7 @@ int run(Case test, const char* output) {
   }
   const V centre = (low + high) / 2;
   for (V& vertex : test.mesh.vertices) vertex -= centre;
-  for (Patch& patch : test.patches) patch.place -= centre;
+  for (Patch& patch : test.patches) patch.position -= centre;
   return run<I>(Box<double>({.half = (high - low) / 2}), test, output);
 }
 

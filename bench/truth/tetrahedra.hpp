@@ -96,7 +96,8 @@ class GmshScript {
       tools += text(tools.empty() ? "" : ", ", tag + 1);
       tag += 2;
     };
-    for (const Patch& p : patches) add(text("Sphere(", tag, ") = {", list(p.place), ", ", p.radius, "};\n"));
+    for (const Patch& p : patches)
+      add(text("Sphere(", tag, ") = {", list(p.position), ", ", p.radius, "};\n"));
     if (body_.kind == Body::ellipsoid)
       add(text("Box(", tag, ") = {", list(V::Constant(-far_)), ", ",
                list(V(2 * far_, far_ + body_.held, 2 * far_)), "};\n"));
@@ -111,7 +112,8 @@ class GmshScript {
   // The distance from the circle around a patch, in its tangent plane.
   static std::string to_rim(const Patch& p) {
     const auto off = [](char axis, double c) { return text('(', axis, " - (", c, "))"); };
-    const std::string x = off('x', p.place.x()), y = off('y', p.place.y()), z = off('z', p.place.z());
+    const std::string x = off('x', p.position.x()), y = off('y', p.position.y()),
+                      z = off('z', p.position.z());
     const V& n = p.normal;
     const std::string h =
         text("((", n.x(), ") * ", x, " + (", n.y(), ") * ", y, " + (", n.z(), ") * ", z, ')');
@@ -156,7 +158,7 @@ class GmshScript {
 inline Tetrahedra read_msh(const std::string& path) {
   std::istringstream in(read_text(path));
   Tetrahedra mesh;
-  std::map<long, V> place;
+  std::map<long, V> position;
   std::map<long, int> number;
   for (std::string word; in >> word;) {
     long count = 0;
@@ -164,7 +166,7 @@ inline Tetrahedra read_msh(const std::string& path) {
       in >> count;
       for (long i = 0, id; i < count; ++i) {
         in >> id;
-        V& p = place[id];
+        V& p = position[id];
         in >> p.x() >> p.y() >> p.z();
       }
     } else if (word == "$Elements") {
@@ -181,7 +183,7 @@ inline Tetrahedra read_msh(const std::string& path) {
         for (int& node : element) {
           words >> id;
           const auto [at, fresh] = number.try_emplace(id, static_cast<int>(mesh.nodes.size()));
-          if (fresh) mesh.nodes.push_back(place.at(id));
+          if (fresh) mesh.nodes.push_back(position.at(id));
           node = at->second;
         }
         mesh.elements.push_back(element);

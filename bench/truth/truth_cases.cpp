@@ -28,9 +28,9 @@ std::size_t nearest_vertex(const palpate::MeshData<double>& mesh, const V& p) {
                                   mesh.vertices.begin());
 }
 
-/// k1 + k2 [1/m] at a place: an ellipsoid's if there are semi-axes, centred at the origin unless its geometry
+/// k1 + k2 [1/m] at a position: an ellipsoid's if there are semi-axes, centred at the origin unless its geometry
 /// says otherwise; else the mesh's, averaged over half a ball's radius.
-double curvature_at(const V& place, double radius, const palpate::MeshData<double>& mesh,
+double curvature_at(const V& position, double radius, const palpate::MeshData<double>& mesh,
                     const std::string& meta) {
   if (const auto axes = numbers(meta, "semi_axes_m"); !axes.empty()) {
     const std::size_t geometry = meta.find("\"geometry\"");  // a contact, too, has a centre
@@ -39,11 +39,11 @@ double curvature_at(const V& place, double radius, const palpate::MeshData<doubl
                             : numbers(meta, "centre_m", geometry, meta.find('}', geometry));
     const palpate::Ellipsoid<double> body(
         {.axes = vector(axes), .centre = centre.empty() ? V(V::Zero()) : vector(centre)});
-    const auto k = body.curvature(place);
+    const auto k = body.curvature(position);
     return k.k1 + k.k2;
   }
   return 2 * palpate::mean_curvature(palpate::TriangleMesh<double>(mesh),
-                                     0.5 * radius)[nearest_vertex(mesh, place)];
+                                     0.5 * radius)[nearest_vertex(mesh, position)];
 }
 
 /// The fixed region: what lies below a plane, if that is what vertices.csv says, else where the nearest
@@ -101,13 +101,13 @@ int main(int argc, char** argv) {
   const auto depths = numbers(meta, "depths_m");
   const std::size_t ball = meta.find("\"indenter\"");
   if (ball != std::string::npos) {
-    const V place = vector(numbers(meta, "first_touch_point_m", ball)),
+    const V position = vector(numbers(meta, "first_touch_point_m", ball)),
             normal = -vector(numbers(meta, "inward_normal", ball));
     const double radius = numbers(meta, "radius_m", ball).at(0);
-    const double curvature = curvature_at(place, radius, mesh, meta);
+    const double curvature = curvature_at(position, radius, mesh, meta);
     for (double depth : depths) {
       const auto pressed =
-          tick.solve(palpate::SphereContact<double>{place, normal, radius, curvature, depth});
+          tick.solve(palpate::SphereContact<double>{position, normal, radius, curvature, depth});
       write(depth, {pressed.on_body(normal)}, {V::Zero()});
     }
   } else {
@@ -115,7 +115,7 @@ int main(int argc, char** argv) {
     for (double depth : depths) {
       std::vector<palpate::ResponseContact<double>> contacts;
       for (const Patch& p : patches)
-        contacts.push_back({.place = p.place,
+        contacts.push_back({.place = p.position,
                             .normal = p.normal,
                             .radius = p.radius,
                             .displacement = depth * p.factor * p.direction,

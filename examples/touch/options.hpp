@@ -43,18 +43,20 @@ inline constexpr const char* usage =
   --repair        weld, turn and drop in the files what is plainly wrong, and say so
   --script NAME   figure10 (default), press, slide, both: press with both pins of the compass
   --at X Z        where press, slide and both work, in metres from the object's middle (default 0 0)
-  --shape MODEL   how the object deforms: skeleton, half-space, response, or none. Default: skeleton; of files half-space.
-                  With response the force is the field's too, that of a soft rubber; else the law of the paper
-  --detect WHERE  undeformed (default): contact is found on the object's shape at rest; deformed: on the shape of the
-                  last tick, worked out in the servo loop; for mesh files
-  --sweep DEPTH   a fast tool is held where a point of it would get deeper than DEPTH, in metres, so that it does not pass
-                  through thin parts: at most 0.4 of the thinnest. Held, it does not slide. Default: not held
+  --shape MODEL   how the object deforms: skeleton, half-space, response, or none. Default: skeleton; of
+                  files half-space. With response the force is the field's too, that of a soft rubber; else
+                  the law of the paper
+  --detect WHERE  undeformed (default): contact is found on the object's shape at rest; deformed: on the
+                  shape of the last tick, worked out in the servo loop; for mesh files
+  --sweep DEPTH   a fast tool is stopped where a point of it would get deeper than DEPTH, in metres, so that it
+                  does not pass through thin parts: at most 0.4 of the thinnest. Stopped, it does not slide.
+                  Default: not stopped
   --rate HZ       servo rate asked of the device (default 1000)
   --stepped       simulated time instead of real time: same bits in every run (stand-in device only)
   --out FOLDER    where the results go (default out)
 
-  --scene NAME    a preset of object, tool, script and shape in out/NAME, in simulated time: ellipsoid (Fig. 10),
-                  cube-head and cube-tail (Fig. 11), heart (Fig. 12)
+  --scene NAME    a preset of object, tool, script and shape in out/NAME, in simulated time: ellipsoid
+                  (Fig. 10), cube-head and cube-tail (Fig. 11), heart (Fig. 12)
   --real-time     the scene at the device's own pace
 )";
 

@@ -102,13 +102,13 @@ class Reader {
   void read_item(const Element& e) {
     element_ = &e;
     const bool is_vertex = e.name == "vertex", is_face = e.name == "face";
-    palpate::Vec3<double> place = palpate::Vec3<double>::Zero();
+    palpate::Vec3<double> position = palpate::Vec3<double>::Zero();
     int axes = 0, lists = 0;
     for (const Property& p : e.properties) {
       if (!p.length) {
         const double value = number(p.type);
         if (is_vertex && p.name.size() == 1 && p.name[0] >= 'x' && p.name[0] <= 'z')
-          place[p.name[0] - 'x'] = value, ++axes;
+          position[p.name[0] - 'x'] = value, ++axes;
         continue;
       }
       const std::uint32_t length = whole(number(*p.length));
@@ -122,7 +122,7 @@ class Reader {
     if (ascii_) end_line();
     if (is_vertex) {
       if (axes != 3) refuse_ply("has vertices without x, y and z");
-      polygons_.vertices.push_back(place);
+      polygons_.vertices.push_back(position);
     }
     if (is_face) {
       if (lists != 1) refuse_ply("has faces without vertex_indices");

@@ -11,14 +11,14 @@ namespace {
 
 using namespace palpate;
 
-/// Down on one place until the hand's spring holds `press` [m], and up again.
+/// Down on one point until the hand's spring holds `press` [m], and up again.
 template <class Body>
 Script press_at(const Body& body, double x, double press) {
   constexpr double hover = 4e-3;
-  const V place = body.raycast(V(x, 1, 0), -V::UnitY()).position;
+  const V position = body.raycast(V(x, 1, 0), -V::UnitY()).position;
   return table(5.4, [=](double t) -> V {
     const double down = smooth_step(t, 1.2, 3.0) - smooth_step(t, 3.4, 5.2);
-    return place + V(0, hover - (hover + press) * down, 0);
+    return position + V(0, hover - (hover + press) * down, 0);
   });
 }
 
@@ -26,8 +26,8 @@ Script press_at(const Body& body, double x, double press) {
 Script with_both_pins(const Heart& heart) {
   Script script = press_at(heart, -18e-3, 6e-3);
   script.seconds = 7.0;
-  const auto held = script.target;
-  script.target = [held](double t) -> V { return held(t < 3.2 ? t : (std::max)(3.2, t - 1.7)); };
+  const auto upright = script.target;
+  script.target = [upright](double t) -> V { return upright(t < 3.2 ? t : (std::max)(3.2, t - 1.7)); };
   script.turn = [](double t) -> Mat3<S> {
     const double angle = 0.28 * (1 - smooth_step(t, 3.0, 4.6)), c = std::cos(angle), s = std::sin(angle);
     Mat3<S> turn;

@@ -27,31 +27,31 @@ inline double smooth_step(double t, double begin, double end) {
   return s * s * (3 - 2 * s);
 }
 
-/// The path, worked out before the servo loop runs: places every 10 ms, straight lines between. Where it
+/// The path, worked out before the servo loop runs: positions every 10 ms, straight lines between. Where it
 /// rises or falls faster than a hand, 0.15 m/s, it is lifted before and after, as a hand lifts a tool over a
 /// step.
 template <class Path>
 Script table(double seconds, const Path& path) {
   constexpr double step = 0.01;
-  std::vector<palpate::Vec3<double>> places;
-  for (int i = 0; i <= static_cast<int>(seconds / step) + 1; ++i) places.push_back(path(i * step));
+  std::vector<palpate::Vec3<double>> positions;
+  for (int i = 0; i <= static_cast<int>(seconds / step) + 1; ++i) positions.push_back(path(i * step));
   constexpr double climb = 0.15 * step;  // [m]
-  for (std::size_t i = 1; i < places.size(); ++i)
-    places[i].y() = (std::max)(places[i].y(), places[i - 1].y() - climb);
-  for (std::size_t i = places.size() - 1; i > 0; --i)
-    places[i - 1].y() = (std::max)(places[i - 1].y(), places[i].y() - climb);
+  for (std::size_t i = 1; i < positions.size(); ++i)
+    positions[i].y() = (std::max)(positions[i].y(), positions[i - 1].y() - climb);
+  for (std::size_t i = positions.size() - 1; i > 0; --i)
+    positions[i - 1].y() = (std::max)(positions[i - 1].y(), positions[i].y() - climb);
   return {seconds,
-          [places = std::move(places)](double t) -> palpate::Vec3<double> {
-            const double s = std::clamp(t / step, 0.0, static_cast<double>(places.size() - 2));
+          [positions = std::move(positions)](double t) -> palpate::Vec3<double> {
+            const double s = std::clamp(t / step, 0.0, static_cast<double>(positions.size() - 2));
             const auto i = static_cast<std::size_t>(s);
             const double part = (std::min)(s - static_cast<double>(i), 1.0);
-            return (1 - part) * places[i] + part * places[i + 1];
+            return (1 - part) * positions[i] + part * positions[i + 1];
           },
           {}};
 }
 
 /// Scripts lead the tool over the body's upper side, upright. `press` [m] is how far below the surface the
-/// hand aims: the grip's spring turns it into a force.
+/// hand aims: the hand's spring turns it into a force.
 template <class Body>
 Script make_script(const Options& options, const Body& body, const palpate::MeshData<double>& tool) {
   constexpr double hover = 6e-3, press = 8e-3, free = 1.2;  // s until the gate has armed and ramped
@@ -75,7 +75,7 @@ Script make_script(const Options& options, const Body& body, const palpate::Mesh
       return over(reach * (2 * along - 1), 0.1 * reach * along, hover - (hover + press) * down);
     });
   }
-  if (options.script == "press") {  // in and out at one place, three times, each deeper
+  if (options.script == "press") {  // in and out at one point, three times, each deeper
     return table(5.0, [=](double t) {
       const double s = t < free ? 0 : t - free;
       const double wave = 0.5 * (1 - std::cos(6.283185307179586 * s / 1.2));

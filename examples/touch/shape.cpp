@@ -38,8 +38,8 @@ Shape mesh_shape(const std::string& model, const MeshData<S>& mesh, S fixed_belo
               std::fflush(stdout);
             }});
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
-    std::printf("\rresponse field of %zu solve vertices in %.1f s\n", field->mesh().vertices.size(),
-                spent.count());
+    std::printf("\rresponse field of %zu boundary element vertices in %.1f s\n",
+                field->mesh().vertices.size(), spent.count());
     Shape shape(mesh, ResponseFieldDeformation<S, most_regions>(field, mesh));
     shape.field = field;
     return shape;

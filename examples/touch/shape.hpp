@@ -87,7 +87,7 @@ class Shape {
     return true;
   }
   [[nodiscard]] std::span<const V> positions() const noexcept { return position_; }
-  /// From now on only places are written, for those who do not draw it.
+  /// From now on only positions are written, for those who do not draw it.
   void drop_normals() noexcept { with_normals_ = false; }
   [[nodiscard]] Frame frame(double t, const Felt& felt) const { return {t, felt, position_, normal_}; }
 
