@@ -64,6 +64,18 @@ palpate_own_target(palpate_test_odr)
 target_include_directories(palpate_test_odr PRIVATE ${generated})
 add_test(NAME odr COMMAND palpate_test_odr)
 
+# Two objects that both make a response field and use it, header-only; and against the compiled set-up.
+add_executable(palpate_test_odr_field odr/first_field.cpp odr/second_field.cpp)
+palpate_own_target(palpate_test_odr_field)
+target_link_libraries(palpate_test_odr_field PRIVATE Threads::Threads)
+add_executable(palpate_test_odr_compiled odr/first_field.cpp odr/second_field.cpp)
+palpate_own_target(palpate_test_odr_compiled)
+target_link_libraries(palpate_test_odr_compiled PRIVATE palpate::compiled)
+foreach(program odr_field odr_compiled)
+  target_include_directories(palpate_test_${program} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+  add_test(NAME ${program} COMMAND palpate_test_${program})
+endforeach()
+
 # An engine: no exceptions, no RTTI, fast-math, and a palpate_config.hpp of its own.
 add_executable(palpate_test_host host/main.cpp)
 palpate_own_target(palpate_test_host)

@@ -9,9 +9,14 @@
 /// |---------------------------------|-------------------------------|------------------------------------|
 /// | PALPATE_ASSERT(condition)       | assert()                      | broken preconditions, debug builds |
 /// | PALPATE_ON_SETUP_ERROR(message) | write to stderr, then abort() | without exceptions: bad input      |
+/// | PALPATE_COMPILED                | not defined                   | defined: set-up is linked, see below |
 /// | PALPATE_NO_THREADS              | not defined                   | defined: set-up uses no threads    |
 ///
 /// PALPATE_ON_SETUP_ERROR must not return.
+///
+/// Header-only is the default. What only set-up needs and costs much to compile is defined in files `setup/*_impl.hpp`,
+/// which the headers include at their end. With PALPATE_COMPILED they do not: src/palpate.cpp holds those functions,
+/// once, and the program links it. The CMake target palpate::compiled defines the macro and links the library.
 
 #if __has_include(<palpate_config.hpp>)
 #include <palpate_config.hpp>
@@ -20,6 +25,13 @@
 #ifndef PALPATE_ASSERT
 #include <cassert>
 #define PALPATE_ASSERT(condition) assert(condition)
+#endif
+
+// A function of set-up in a file *_impl.hpp.
+#ifdef PALPATE_COMPILED
+#define PALPATE_SETUP_INLINE
+#else
+#define PALPATE_SETUP_INLINE inline
 #endif
 
 // An empty member costs no byte. MSVC ignores the standard spelling.

@@ -18,7 +18,8 @@
 /// little: `unresolved_area()`. Reports (error.hpp) bad E, nu, mesh or fixed region. Source: [brebbia1984],
 /// [james1999].
 
-#include <palpate/response/setup/response_columns.hpp>
+#include <palpate/geometry/concept.hpp>
+#include <palpate/response/setup/element_mesh.hpp>
 #include <palpate/response/tick/mid_edge_table.hpp>
 #include <palpate/response/tick/patch_table.hpp>
 #include <palpate/response/tick/rotation_table.hpp>
@@ -43,6 +44,10 @@ struct ResponseParts {
   MidEdgeTable::Rows bends, raises;
 };
 
+namespace detail {
+class LoadPlaces;
+}
+
 class ResponseField {
  public:
   struct Params {
@@ -54,67 +59,23 @@ class ResponseField {
   };
   /// Fields per solved node of the touch mesh: unit forces along x, y, z; unit radial double force; unit
   /// tilts along its two tangents; unit twist about its inward normal.
-  static constexpr std::size_t loads = 7;
+  static constexpr std::size_t loads = InfluenceFunctions::loads;
 
   /// `fixed` is true where the object is held; the mesh is cut along its boundary.
   template <Real S>
   ResponseField(const MeshData<S>& mesh, const FixedRegion& fixed, const Params& params) {
-    const MeshData<double> cut = detail::cut_at_rim(to_double(mesh), fixed);
-    std::vector<std::uint8_t> inside(cut.triangles.size());
-    for (std::size_t t = 0; t < inside.size(); ++t) {
-      const auto& c = cut.triangles[t];
-      inside[t] = fixed((cut.vertices[c[0]] + cut.vertices[c[1]] + cut.vertices[c[2]]) / 3);
-    }
-    build(cut, inside, params);
+    build(to_double(mesh), fixed, params);
   }
   /// The object is held at the listed vertices: on every triangle that has all three of its corners in the
   /// list.
   template <Real S>
   ResponseField(const MeshData<S>& mesh, const std::vector<std::uint32_t>& fixed_vertices,
                 const Params& params) {
-    std::vector<std::uint8_t> held(mesh.vertices.size(), 0);
-    for (auto v : fixed_vertices) {
-      if (v >= held.size()) fail("ResponseField", "fixed vertices must be vertices of the mesh", v);
-      held[v] = 1;
-    }
-    std::vector<std::uint8_t> inside(mesh.triangles.size());
-    for (std::size_t t = 0; t < inside.size(); ++t) {
-      const auto& c = mesh.triangles[t];
-      inside[t] = c[0] < held.size() && c[1] < held.size() && c[2] < held.size() && held[c[0]] &&
-                  held[c[1]] && held[c[2]];
-    }
-    build(to_double(mesh), inside, params);
+    build(to_double(mesh), fixed_vertices, params);
   }
   /// From parts that were saved (save.hpp), which has checked them.
-  explicit ResponseField(ResponseParts parts)
-      : E_(parts.E), nu_(parts.nu), mesh_(std::move(parts.mesh)), columns_(std::move(parts.columns)) {
-    stride_ = padded(mesh_.vertices.size());
-    const std::size_t levels = parts.second.size() / parts.nodes.size();
-    touch_ = TouchMesh(std::move(parts.nodes), std::move(parts.triangles), std::move(parts.share_begin),
-                       std::move(parts.shares));
-    table_ = PatchTable(touch_, std::move(parts.own), std::move(parts.second), std::move(parts.moments),
-                        levels, std::move(parts.spread_begin), std::move(parts.spread));
-    bends_ = MidEdgeTable(mesh_, std::move(parts.edges), std::move(parts.bends), std::move(parts.raises));
-    read_mesh();
-  }
-  [[nodiscard]] ResponseParts parts() const {
-    return {E_,
-            nu_,
-            mesh_,
-            touch_.nodes(),
-            touch_.triangles(),
-            touch_.share_begin(),
-            touch_.all_shares(),
-            columns_,
-            table_.own_rows(),
-            table_.second_rows(),
-            table_.moment_rows(),
-            table_.spread_begin(),
-            table_.all_spread(),
-            bends_.of_triangle(),
-            bends_.edge_rows(),
-            bends_.vertex_rows()};
-  }
+  explicit ResponseField(ResponseParts parts);
+  [[nodiscard]] ResponseParts parts() const;
 
   [[nodiscard]] double E() const noexcept { return E_; }
   [[nodiscard]] double nu() const noexcept { return nu_; }
@@ -122,7 +83,7 @@ class ResponseField {
   [[nodiscard]] const SolveMesh& mesh() const noexcept { return mesh_; }
   /// Fraction of the free surface's area where the body is thinner than the solve mesh's edges (see
   /// palpate::unresolved_area): 0 is good, 1 is a plate with too few vertices. Milliseconds; set-up only.
-  [[nodiscard]] double unresolved_area() const { return palpate::unresolved_area(mesh_); }
+  [[nodiscard]] double unresolved_area() const;
   [[nodiscard]] const TouchMesh& touch() const noexcept { return touch_; }
   [[nodiscard]] const PatchTable& table() const noexcept { return table_; }
   [[nodiscard]] const MidEdgeTable& bends() const noexcept { return bends_; }
@@ -138,9 +99,7 @@ class ResponseField {
   }
   /// mu w of load l of solved node k: x at every vertex, y and z `stride()` further each [1/m]; l >= 3:
   /// [1/m^2].
-  [[nodiscard]] const float* column(std::size_t k, std::size_t l) const noexcept {
-    return &columns_[(loads * k + l) * 3 * stride_];
-  }
+  [[nodiscard]] const float* column(std::size_t k, std::size_t l) const noexcept { return influence()(k, l); }
   /// The same at the place of node i.
   [[nodiscard]] Vec3<double> at(std::size_t i, std::size_t k, std::size_t l) const noexcept {
     const TouchNode& node = touch_.nodes()[i];
@@ -160,6 +119,7 @@ class ResponseField {
   [[nodiscard]] const float* is_free() const noexcept { return &place_[3 * stride_]; }
 
  private:
+  [[nodiscard]] InfluenceFunctions influence() const noexcept { return {columns_.data(), stride_}; }
   template <Real S>
   [[nodiscard]] static MeshData<double> to_double(const MeshData<S>& mesh) {
     MeshData<double> out;
@@ -169,104 +129,14 @@ class ResponseField {
     return out;
   }
 
-  void build(const MeshData<double>& mesh, const std::vector<std::uint8_t>& fixed_triangle,
-             const Params& params) {
-    require_positive(params.E, "ResponseField", "E [Pa] must be > 0");
-    if (!(params.nu >= 0 && params.nu <= 0.5)) fail("ResponseField", "nu must be in [0, 1/2]", params.nu);
-    E_ = params.E;
-    nu_ = params.nu;
-    const auto report = [&params](double done) {
-      if (params.progress) params.progress(done);
-    };
-    report(0);
-    SolveMesh solve = make_solve_mesh(SmoothSurface(mesh), fixed_triangle, params.mesh);
-    report(0.1);
-    BoundaryElements bem(std::move(solve), nu_, params.threads);
-    report(0.3);
-    bem.factorise();
-    report(0.45);
-    const detail::LoadPlaces places(bem.mesh());
-    touch_ = places.touch_mesh();
-    const detail::Matrix w = solve_columns(bem, nu_, std::span(touch_.nodes()).first(touch_.solved()));
-    report(0.9);
-    for (Eigen::Index c = 0; c < w.cols(); ++c)
-      for (Eigen::Index r = 0; r < w.rows(); ++r)
-        if (!is_finite(w(r, c)))
-          fail("ResponseField",
-               "the boundary equation has no finite solution: is the mesh closed, without triangles that "
-               "fold over?");
-    mesh_ = bem.mesh();
-    bends_ = MidEdgeTable(mesh_, bem.bend());
-    stride_ = padded(mesh_.vertices.size());
-    columns_.resize(loads * 3 * stride_ * touch_.nodes().size(), 0.f);
-    for (std::uint32_t k = 0; k < places.solved_or_held(); ++k)
-      for (std::size_t l = 0; l < 3; ++l) {
-        float* out = &columns_[(loads * k + l) * 3 * stride_];
-        for (std::uint32_t v = 0; v < mesh_.vertices.size(); ++v) {
-          const Vec3<double> u =
-              k < touch_.solved()
-                  ? Vec3<double>(w.block<3, 1>(Eigen::Index(3 * v), Eigen::Index(3 * k + l)))
-                  : Vec3<double>(-detail::near_at_vertex(mesh_, touch_.nodes()[k], v, int(l), nu_));
-          for (std::size_t i = 0; i < 3; ++i) out[i * stride_ + v] = static_cast<float>(u[Eigen::Index(i)]);
-        }
-      }
-    detail::parallel_for(places.solved_or_held(), params.threads, [&](std::size_t k) { derive(places, k); });
-    for (std::size_t k = places.solved_or_held(); k < touch_.nodes().size(); ++k) join(places, k);
-    table_ = PatchTable(mesh_, bends_, touch_, params.threads, stride_,
-                        [this](std::size_t k, std::size_t l) { return column(k, l); });
-    columns_.resize(loads * 3 * stride_ * touch_.solved());
-    columns_.shrink_to_fit();
-    read_mesh();
-    report(1);
-  }
-
-  // Double force, tilts and twist: derivatives of the forces' fields by their place.
-  void derive(const detail::LoadPlaces& places, std::size_t k) {
-    using Row = Eigen::Map<const Eigen::ArrayXf>;
-    const auto size = static_cast<Eigen::Index>(3 * stride_);
-    const Vec3<double> m = -touch_.nodes()[k].normal, t1 = perpendicular(Vec3<double>(-m)), t2 = t1.cross(m);
-    for (std::size_t l = 3; l < loads; ++l) {
-      Eigen::Map<Eigen::ArrayXf> sum(&columns_[(loads * k + l) * 3 * stride_], size);
-      for (const auto& w : places.gradient(k)) {
-        const Vec3<double> f = l == 3   ? Vec3<double>(0.5 * w.g)
-                               : l == 6 ? Vec3<double>(0.5 * m.cross(w.g))
-                                        : Vec3<double>(w.g.dot(l == 4 ? t1 : t2) * m);
-        for (int i = 0; i < 3; ++i)
-          sum += static_cast<float>(f[i]) * Row(column(w.node, std::size_t(i)), size);
-      }
-    }
-  }
-
-  // An edge's node: the mean of its parts' loads.
-  void join(const detail::LoadPlaces& places, std::size_t k) {
-    using Row = Eigen::Map<const Eigen::ArrayXf>;
-    const auto size = static_cast<Eigen::Index>(3 * stride_);
-    const float share = 1.f / static_cast<float>(places.parts(k).size());
-    const Vec3<double> n = touch_.nodes()[k].normal, t1 = perpendicular(n), t2 = n.cross(t1);
-    const auto sum = [&](std::size_t l) {
-      return Eigen::Map<Eigen::ArrayXf>(&columns_[(loads * k + l) * 3 * stride_], size);
-    };
-    for (auto part : places.parts(k)) {
-      for (std::size_t l = 0; l < loads; ++l)
-        if (l != 4 && l != 5) sum(l) += share * Row(column(part, l), size);
-      const Vec3<double> pn = touch_.nodes()[part].normal, p1 = perpendicular(pn), p2 = pn.cross(p1);
-      sum(4) += share * (static_cast<float>(t1.dot(p1)) * Row(column(part, 4), size) +
-                         static_cast<float>(t1.dot(p2)) * Row(column(part, 5), size));
-      sum(5) += share * (static_cast<float>(t2.dot(p1)) * Row(column(part, 4), size) +
-                         static_cast<float>(t2.dot(p2)) * Row(column(part, 5), size));
-    }
-  }
-
-  // What a tick reads of the mesh alone.
-  void read_mesh() {
-    rotation_ = RotationTable(mesh_, stride_);
-    place_.assign(4 * stride_, 0.f);
-    for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
-      for (std::size_t i = 0; i < 3; ++i)
-        place_[i * stride_ + v] = static_cast<float>(mesh_.vertices[v][Eigen::Index(i)]);
-      place_[3 * stride_ + v] = mesh_.fixed_vertex[v] ? 0.f : 1.f;
-    }
-  }
+  void build(const MeshData<double>& mesh, const FixedRegion& fixed, const Params& params);
+  void build(const MeshData<double>& mesh, const std::vector<std::uint32_t>& fixed_vertices,
+             const Params& params);
+  void build_from(const MeshData<double>& mesh, const std::vector<std::uint8_t>& fixed_triangle,
+                  const Params& params);
+  void derive(const detail::LoadPlaces& places, std::size_t k);
+  void join(const detail::LoadPlaces& places, std::size_t k);
+  void read_mesh();
 
   double E_ = 0, nu_ = 0;
   SolveMesh mesh_;
@@ -279,3 +149,7 @@ class ResponseField {
 };
 
 }  // namespace palpate
+
+#ifndef PALPATE_COMPILED
+#include <palpate/response/setup/response_field_impl.hpp>
+#endif

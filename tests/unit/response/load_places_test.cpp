@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <palpate/response/response_contact.hpp>
+#include <palpate/response/setup/load_places.hpp>
 
 #include "support/check.hpp"
 #include "support/response_meshes.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <palpate/response/response_contact.hpp>
 #include <palpate/response/save.hpp>
+#include <palpate/response/setup/load_places.hpp>
 
 #include "support/check.hpp"
 #include "support/no_heap.hpp"

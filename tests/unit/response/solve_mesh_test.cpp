@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <palpate/response/setup/element_mesh.hpp>
+#include <palpate/response/setup/make_element_mesh.hpp>
 
 #include "support/check.hpp"
 #include "support/response_bodies.hpp"

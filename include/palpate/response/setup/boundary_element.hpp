@@ -12,7 +12,8 @@
 /// Unknown: u at free vertices, t at fixed ones. Source: [brebbia1984].
 
 #include <palpate/elasticity/kelvin.hpp>
-#include <palpate/response/setup/element_mesh.hpp>
+#include <palpate/response/setup/constants.hpp>
+#include <palpate/response/setup/make_element_mesh.hpp>
 #include <palpate/response/setup/parallel.hpp>
 #include <palpate/response/setup/quadrature.hpp>
 #include <palpate/response/tick/edge_bend.hpp>
@@ -66,7 +67,7 @@ template <std::size_t N>
 void polar_points(const Element& e, const Vec3d& apex, std::vector<ElementPoint>& out) {
   for (int c = 0; c < 3; ++c) {
     const double share = apex[c];
-    if (share < 1e-9) continue;
+    if (share < setup::min_share) continue;
     element_points(e, duffy_rule<N>(apex, Vec3d::Unit((c + 1) % 3), Vec3d::Unit((c + 2) % 3), share), out);
   }
 }
@@ -75,9 +76,6 @@ void polar_points(const Element& e, const Vec3d& apex, std::vector<ElementPoint>
 /// H, G and the factorised system of one body. Vertices n, nodes k, mu = 1.
 class BoundaryElements {
  public:
-  /// Distances, in longest edges, beyond which a triangle is not cut further / beyond which three points do.
-  static constexpr double near = 1.8, far = 5;
-
   BoundaryElements(SolveMesh mesh, double nu, unsigned threads)
       : mesh_(std::move(mesh)), bend_(mesh_), kelvin_(nu), threads_(threads) {
     if (!(nu >= 0 && nu <= 0.5)) fail("BoundaryElements", "nu must be in [0, 1/2]", nu);
@@ -125,7 +123,7 @@ class BoundaryElements {
 
   /// Solves in place. Each column: in, G t - H_fixed u_fixed; out, u at free vertices, t at fixed ones.
   void solve(detail::Matrix& columns) const {
-    const Eigen::Index block = 48, count = (columns.cols() + block - 1) / block;
+    const Eigen::Index block = detail::setup::solved_together, count = (columns.cols() + block - 1) / block;
     detail::parallel_for(static_cast<std::size_t>(count), threads_, [&](std::size_t b) {
       const Eigen::Index first = Eigen::Index(b) * block, size = (std::min)(block, columns.cols() - first);
       columns.middleCols(first, size) = lu_.solve(columns.middleCols(first, size)).eval();
@@ -213,14 +211,14 @@ class BoundaryElements {
     };
     if (self >= 0) {
       scratch.clear();
-      detail::polar_points<8>(e, Vec3<double>::Unit(self), scratch);
+      detail::polar_points<detail::setup::self_points>(e, Vec3<double>::Unit(self), scratch);
       for (const auto& q : scratch) add(q);
       return;
     }
     const double distance = (e.centre - x).norm();
-    if (distance > far * e.edge) {
+    if (distance > detail::setup::three_point_elements * e.edge) {
       for (std::size_t q = 3 * t; q < 3 * t + 3; ++q) add(points3_[q]);
-    } else if (distance > (near + 0.6) * e.edge) {
+    } else if (distance > detail::setup::seven_point_elements * e.edge) {
       for (std::size_t q = 7 * t; q < 7 * t + 7; ++q) add(points7_[q]);
     } else {
       quarter(x, e, {Vec3<double>::Unit(0), Vec3<double>::Unit(1), Vec3<double>::Unit(2)}, 1, 0, add,
@@ -237,7 +235,7 @@ class BoundaryElements {
         (std::max)({(p[0] - p[1]).squaredNorm(), (p[1] - p[2]).squaredNorm(), (p[2] - p[0]).squaredNorm()}));
     const Vec3<double> w = detail::closest_on_triangle<double>(x, p[0], p[1], p[2]);
     const double distance = (w[0] * p[0] + w[1] * p[1] + w[2] * p[2] - x).norm();
-    if (distance > near * edge || level == 6) {
+    if (distance > detail::setup::near_elements * edge || level == detail::setup::max_divisions) {
       for (const TrianglePoint& q : radon_rule()) {
         const Vec3<double> l = q.weight[0] * part[0] + q.weight[1] * part[1] + q.weight[2] * part[2];
         const Vec3<double> n = (0.5 * share * q.share) * e.normal(l);

@@ -18,16 +18,10 @@
 /// along a right angle's edge like dist^-0.4 only (nu = 1/2) [williams1952]. Where all of a body is thin, no
 /// vertices are left over for its thin parts.
 
+#include <palpate/response/setup/element_mesh.hpp>
 #include <palpate/response/setup/smooth_surface.hpp>
 
 namespace palpate {
-
-/// What the remesher works on. Features are edges that stay: creases and the rim.
-struct RemeshParams {
-  double vertices = 600;   ///< wanted number of vertices [-]
-  double rim_ratio = 0.3;  ///< r: edge length at the rim over that of the body [-]
-  double growth = 0.35;    ///< g: edge length gained per distance from the rim, a crease or a thin part [-]
-};
 
 namespace detail {
 
@@ -60,7 +54,7 @@ class EdgeLength {
       const Triangle &l = t[e.triangle[0]], &r = t[e.triangle[1]];
       const Vec3d nl = area_vector(p[l[0]], p[l[1]], p[l[2]]), nr = area_vector(p[r[0]], p[r[1]], p[r[2]]);
       const bool convex = nl.dot(p[r[0]] + p[r[1]] + p[r[2]] - 3 * p[e.a()]) < 0;
-      if (convex && nl.dot(nr) < SmoothSurface::crease_cosine * nl.norm() * nr.norm())
+      if (convex && nl.dot(nr) < setup::crease_cosine * nl.norm() * nr.norm())
         sharp[e.a()] = sharp[e.b()] = 1;
     }
     for (std::size_t v = 0; v < p.size(); ++v) {
@@ -86,8 +80,8 @@ class EdgeLength {
   void fit(const std::vector<Vec3d>& p, const std::vector<Triangle>& t, double vertices) {
     thin_ = 1;
     fit_h(p, t, vertices);
-    const double most = 1.25 * h_;
-    for (thin_ = 0.25; thin_ < 1; thin_ *= std::sqrt(2.0)) {
+    const double most = setup::max_growth_of_h * h_;
+    for (thin_ = setup::min_thin_ratio; thin_ < 1; thin_ *= std::sqrt(2.0)) {
       fit_h(p, t, vertices);
       if (!(h_ > most)) return;
     }
@@ -122,12 +116,12 @@ class EdgeLength {
   };
 
   [[nodiscard]] double distance(const Vec3d& x, const std::vector<Vec3d>& points) const noexcept {
-    double best = 1e6 * reach_ * reach_;
+    double best = setup::far_square * reach_ * reach_;
     for (const Vec3d& q : points) best = (std::min)(best, (q - x).squaredNorm());
     return std::sqrt(best);
   }
   void fit_h(const std::vector<Vec3d>& p, const std::vector<Triangle>& t, double vertices) {
-    double low = 0.02 * h_, high = 50 * h_;
+    double low = setup::min_h_factor * h_, high = setup::max_h_factor * h_;
     for (int i = 0; i < 40; ++i) {
       h_ = std::sqrt(low * high);
       update();
@@ -146,7 +140,7 @@ class EdgeLength {
       changed = false;
       for (const Side& s : sides_) {
         double &a = wanted_[s.a], &b = wanted_[s.b];
-        if (std::abs(a - b) <= s.growth * (1 + 1e-9)) continue;
+        if (std::abs(a - b) <= s.growth * (1 + setup::growth_slack)) continue;
         (a > b ? a : b) = (std::min)(a, b) + s.growth;
         changed = true;
       }
@@ -154,7 +148,7 @@ class EdgeLength {
     for (std::size_t v = 0; v < at_.size(); ++v) {
       const At& at = at_[v];
       const double b = wanted_[v], g = params_.growth;
-      wanted_[v] = (std::min)({b, 0.75 * b + g * at.crease, params_.rim_ratio * b + g * at.rim,
+      wanted_[v] = (std::min)({b, setup::crease_ratio * b + g * at.crease, params_.rim_ratio * b + g * at.rim,
                                (std::min)(2 * params_.rim_ratio, 1.0) * b + g * at.sharp_rim});
     }
   }

@@ -9,7 +9,8 @@
 /// linearly. Without the middles a contact between two nodes next to a crease is three times as wrong as one
 /// at a node (docs/response_field.md).
 
-#include <palpate/response/setup/element_mesh.hpp>
+#include <palpate/response/setup/constants.hpp>
+#include <palpate/response/setup/make_element_mesh.hpp>
 #include <palpate/response/tick/load_mesh.hpp>
 
 #include <algorithm>
@@ -36,7 +37,7 @@ class LoadPlaces {
     for (std::uint32_t t = 0; t < m.triangles.size(); ++t)
       for (auto v : m.triangles[t]) around_[v].push_back(t);
     number_.resize(m.nodes.size());
-    const auto place_nodes = [&](bool solved) {
+    const auto add_nodes = [&](bool solved) {
       for (std::uint32_t k = 0; k < number_.size(); ++k) {
         if ((free[k] != 0) != solved) continue;
         number_[k] = static_cast<std::uint32_t>(nodes_.size());
@@ -45,10 +46,10 @@ class LoadPlaces {
         find_place(nodes_.back(), around_[node.vertex]);
       }
     };
-    place_nodes(true);
+    add_nodes(true);
     place_middles();
     solved_ = nodes_.size();
-    place_nodes(false);
+    add_nodes(false);
     for (std::uint32_t t = 0; t < m.triangles.size(); ++t) cut(t);
     const std::vector<List> ring = rings();
     for (std::size_t k = 0; k < ring.size(); ++k)
@@ -118,7 +119,7 @@ class LoadPlaces {
     for (const MeshEdge& e : edges_) {
       if (!is_free(e) || is_crease(e)) continue;
       const Vec3d &a = mesh_.vertices[e.a()], &b = mesh_.vertices[e.b()], half = 0.5 * (a + b);
-      if (!((b - a).norm() > 0.5 * distance(half))) continue;
+      if (!((b - a).norm() > setup::middle_ratio * distance(half))) continue;
       const auto end = ends(e, 0);
       const SolveMesh::Node &p = mesh_.nodes[end[0]], &q = mesh_.nodes[end[1]];
       const double shorter = (q.source - p.source).squaredNorm() / (b - a).squaredNorm();
@@ -221,17 +222,18 @@ class LoadPlaces {
       List near;
       const auto gather = [&](const List& from) {
         for (auto j : from)
-          if (j != k && !nodes_[j].crease && nodes_[j].normal.dot(node.normal) > 0.3) add_once(near, j);
+          if (j != k && !nodes_[j].crease && nodes_[j].normal.dot(node.normal) > setup::gradient_cosine)
+            add_once(near, j);
       };
       gather(ring[k]);
       if (beside_crease[k])
         for (auto l : ring[k]) gather(ring[l]);
       find_moments(near);
-      if (near.size() < 3 || determinant() < 0.1 * (pp + qq) * (pp + qq)) {  // at most 0.25
+      if (near.size() < 3 || determinant() < setup::min_gradient_determinant * (pp + qq) * (pp + qq)) {
         near = ring[k];
         find_moments(near);
       }
-      const double least = 1e-6 * (pp + qq);
+      const double least = setup::gradient_penalty * (pp + qq);
       pp += least, qq += least;
       const double det = determinant();
       Vec3d sum = Vec3d::Zero();

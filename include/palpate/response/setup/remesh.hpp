@@ -35,8 +35,8 @@ class Remesher {
   }
 
   void run() {
-    wanted_.uniform(uniform_length(4 * params_.vertices));
-    if (double(p_.size()) > 8 * params_.vertices) decimate(true);
+    wanted_.uniform(uniform_length(setup::fine_vertices * params_.vertices));
+    if (double(p_.size()) > setup::too_fine_vertices * params_.vertices) decimate(true);
     double aim = params_.vertices;
     for (int pass = 0; pass < 3; ++pass) {
       measure();
@@ -49,9 +49,8 @@ class Remesher {
         flip();
         relax();
       }
-      // Triangles are not all alike and creases are divided into whole edges: up to a tenth more is usual.
-      aim = std::clamp(aim * 1.1 * params_.vertices / double(p_.size()), 0.75 * params_.vertices,
-                       params_.vertices);
+      aim = std::clamp(aim * setup::usual_excess * params_.vertices / double(p_.size()),
+                       setup::min_aim * params_.vertices, params_.vertices);
     }
     compact();
   }
@@ -97,7 +96,7 @@ class Remesher {
     for (int i = 0; i < 60; ++i) {
       const std::size_t before = t_.size();
       collapse(uniform);
-      if (double(before - t_.size()) < 0.01 * double(before)) break;
+      if (double(before - t_.size()) < setup::min_progress * double(before)) break;
     }
   }
 
@@ -109,7 +108,7 @@ class Remesher {
     };
     std::vector<std::pair<double, std::uint32_t>> order;
     for (std::uint32_t e = 0; e < edges.size(); ++e)
-      if (const double r = ratio(edges[e]); r > 4.0 / 3.0) order.push_back({-r, e});
+      if (const double r = ratio(edges[e]); r > setup::split_ratio) order.push_back({-r, e});
     std::sort(order.begin(), order.end());
     std::vector<std::uint8_t> locked(t_.size(), 0);
     for (const auto& [minus_ratio, e] : order) {
@@ -154,10 +153,10 @@ class Remesher {
     }
     for (std::uint32_t v = 0; v < p_.size(); ++v) {
       if (count[v] == 0) continue;
-      // A line that turns by more than 40 degrees has a corner there.
+      // A line that turns as much as a crease has a corner there.
       const bool smooth =
           count[v] == 2 && (p_[v] - p_[ends[v][0]]).normalized().dot((p_[ends[v][1]] - p_[v]).normalized()) >
-                               SmoothSurface::crease_cosine;
+                               setup::crease_cosine;
       count[v] = smooth ? 1 : 2;
     }
     return count;
@@ -171,7 +170,7 @@ class Remesher {
     std::vector<std::pair<double, std::uint32_t>> order;
     for (std::uint32_t e = 0; e < edges.size(); ++e)
       if (const double r = (p_[edges[e].a()] - p_[edges[e].b()]).norm() / wanted_(edges[e].a(), edges[e].b());
-          r < 0.8)
+          r < setup::collapse_ratio)
         order.push_back({r, e});
     std::sort(order.begin(), order.end());
     std::vector<std::uint8_t> locked(p_.size(), 0), dead(t_.size(), 0);
@@ -225,12 +224,12 @@ class Remesher {
       const Vec3d before = area_vector(p_[t[0]], p_[t[1]], p_[t[2]]), after = area_vector(q[0], q[1], q[2]);
       const double longest = std::sqrt((std::max)(
           {(q[0] - q[1]).squaredNorm(), (q[1] - q[2]).squaredNorm(), (q[2] - q[0]).squaredNorm()}));
-      if (after.norm() < 0.05 * longest * longest && after.norm() < before.norm()) return false;
-      if (before.dot(after) < 0.5 * before.norm() * after.norm()) return false;
+      if (after.norm() < setup::min_shape * longest * longest && after.norm() < before.norm()) return false;
+      if (before.dot(after) < setup::max_turn_cosine * before.norm() * after.norm()) return false;
       const double was =
           std::sqrt((std::max)({(p_[t[0]] - p_[t[1]]).squaredNorm(), (p_[t[1]] - p_[t[2]]).squaredNorm(),
                                 (p_[t[2]] - p_[t[0]]).squaredNorm()}));
-      if (longest > 4.0 / 3.0 * wanted_(u) && longest > was) return false;
+      if (longest > setup::split_ratio * wanted_(u) && longest > was) return false;
     }
     if (shared != 2) return false;
     for (std::uint32_t i = rings.begin[v]; i < rings.begin[v + 1]; ++i) {
@@ -280,11 +279,13 @@ class Remesher {
         const Vec3d u = p_[a] - p_[at], v = p_[b] - p_[at];
         return std::atan2(u.cross(v).norm(), u.dot(v));
       };
-      if (angle(c) + angle(d) < 3.2) continue;  // Delaunay, with a margin so that flips end
+      if (angle(c) + angle(d) < setup::flip_angle) continue;
       if (std::binary_search(keys.begin(), keys.end(), edge_key(c, d))) continue;
       const Vec3d n0 = area_vector(p_[a], p_[b], p_[c]) + area_vector(p_[b], p_[a], p_[d]);
       const Vec3d n1 = area_vector(p_[a], p_[d], p_[c]), n2 = area_vector(p_[d], p_[b], p_[c]);
-      if (n1.dot(n0) < 0.8 * n1.norm() * n0.norm() || n2.dot(n0) < 0.8 * n2.norm() * n0.norm()) continue;
+      if (n1.dot(n0) < setup::flip_cosine * n1.norm() * n0.norm() ||
+          n2.dot(n0) < setup::flip_cosine * n2.norm() * n0.norm())
+        continue;
       l = {a, d, c};
       r = {d, b, c};
       locked[e.triangle[0]] = locked[e.triangle[1]] = 1;
@@ -326,7 +327,7 @@ class Remesher {
         }
       }
       if (!(weight > 0)) continue;
-      const Vec3d target = p_[v] + 0.7 * sum / weight;
+      const Vec3d target = p_[v] + setup::relaxation * sum / weight;
       const Vec3d old = p_[v], moved = rank[v] == 1 ? project_line(target) : surface_.project(target);
       bool good = true;
       for (std::uint32_t i = rings.begin[v]; i < rings.begin[v + 1] && good; ++i) {
@@ -335,7 +336,8 @@ class Remesher {
         p_[v] = moved;
         const Vec3d after = area_vector(p_[t[0]], p_[t[1]], p_[t[2]]);
         p_[v] = old;
-        good = before.dot(after) > 0.5 * before.norm() * after.norm() && after.norm() > 0.2 * before.norm();
+        good = before.dot(after) > setup::max_turn_cosine * before.norm() * after.norm() &&
+               after.norm() > setup::min_area_ratio * before.norm();
       }
       if (good) p_[v] = moved;
     }

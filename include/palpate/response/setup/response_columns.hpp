@@ -38,7 +38,7 @@ class NearSource {
       const Vec3d w = closest_on_triangle<double>(s.source, e.corner[0], e.corner[1], e.corner[2]);
       const double distance =
           (w[0] * e.corner[0] + w[1] * e.corner[1] + w[2] * e.corner[2] - s.source).norm();
-      if (distance <= 2.2 * s.size) out.push_back({t, w, distance});
+      if (distance <= setup::near_traction * s.size) out.push_back({t, w, distance});
     }
     return out;
   }
@@ -48,7 +48,7 @@ class NearSource {
     const SolveMesh& m = bem_.mesh();
     for (std::uint32_t j = 0; j < m.nodes.size(); ++j) {
       const Vec3d& x = m.vertices[m.nodes[j].vertex];
-      if ((x - s.source).norm() < 0.6 * s.size)  // not smooth there
+      if ((x - s.source).norm() < setup::singular_traction * s.size)  // not smooth there
         out.middleRows<3>(3 * Eigen::Index(j)).setZero();
       else
         out.middleRows<3>(3 * Eigen::Index(j)) = traction(s, x, m.nodes[j].normal);
@@ -70,8 +70,8 @@ class NearSource {
     for (const auto& [t, apex, distance] : close) {
       const Element& e = bem_.elements()[t];
       scratch.clear();
-      if (distance < 0.6 * s.size)
-        polar_points<6>(e, apex, scratch);
+      if (distance < setup::singular_traction * s.size)
+        polar_points<setup::traction_points>(e, apex, scratch);
       else
         element_points(e, radon_rule(), scratch);
       Mat3<double> lump[3] = {Mat3<double>::Zero(), Mat3<double>::Zero(), Mat3<double>::Zero()};
@@ -98,11 +98,11 @@ class NearSource {
       const Vec3d& x = m.vertices[i];
       const double distance = (x - s.source).norm();
       Mat3<double> sum = Mat3<double>::Zero();
-      if (distance > 1.5 * reach) {  // from afar, forces at the vertices do
+      if (distance > setup::far_from_elements * reach) {  // from afar, forces at the vertices do
         for (const auto& [v, f] : lumps) sum += bem_.kelvin().displacement(m.vertices[v] - x, f);
       } else {
         // At the node itself the mean over a patch is wanted: 1/R^2 is cut off there.
-        const double hold = distance < 0.3 * s.size ? 0.35 * s.size : 0;
+        const double hold = distance < setup::own_vertex * s.size ? setup::own_cut_off * s.size : 0;
         for (const Point& q : points) {
           const Vec3d r = q.x - x;
           if (r.squaredNorm() < hold * hold) continue;
@@ -164,8 +164,8 @@ namespace detail {
 [[nodiscard]] inline Vec3d near_at_vertex(const SolveMesh& m, const TouchNode& node, std::uint32_t v, int l,
                                           double nu) {
   const Vec3d r = m.vertices[v] - node.source, e = Vec3d::Unit(l);
-  const bool own = r.norm() < 0.3 * node.size;
-  const Vec3d u = own ? flat_punch_load(r, -node.normal, 0, 0.5 * node.size, e, nu)
+  const bool own = r.norm() < setup::own_vertex * node.size;
+  const Vec3d u = own ? flat_punch_load(r, -node.normal, 0, setup::own_disc * node.size, e, nu)
                       : point_load<double>(r, -node.normal, e, nu);
   return u / (4 * std::numbers::pi);
 }
@@ -183,7 +183,7 @@ namespace detail {
   const auto hold = [&](Eigen::Ref<Matrix> out, Eigen::Index row, std::uint32_t v, const TouchNode& node) {
     for (int l = 0; l < 3; ++l) out.block<3, 1>(row, l) = detail::near_at_vertex(m, node, v, l, nu);
   };
-  constexpr Eigen::Index block = 64;
+  constexpr Eigen::Index block = detail::setup::loads_together;
   const Eigen::Index blocks = (count + block - 1) / block;
   detail::parallel_for(static_cast<std::size_t>(blocks), bem.threads(), [&](std::size_t b) {
     const Eigen::Index first = Eigen::Index(b) * block, size = (std::min)(block, count - first);

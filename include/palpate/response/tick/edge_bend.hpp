@@ -18,7 +18,9 @@
 /// fifths where in one.
 
 #include <palpate/core/cholesky.hpp>
+#include <palpate/response/setup/constants.hpp>
 #include <palpate/response/setup/element_mesh.hpp>
+#include <palpate/response/setup/mesh_edges.hpp>
 
 namespace palpate::detail {
 
@@ -86,11 +88,8 @@ class EdgeBend {
     std::array<double, 5> by;
   };
 
-  // Weighted least squares, 1/d^2. Where the neighbours do not tell (two rows across a narrow strip), a small
-  // penalty on the second derivatives makes them small: 0.05^2 of the slopes' weight, 0.3 % of a derivative
-  // that is well seen.
+  // Weighted least squares, 1/d^2, with penalties where the neighbours do not tell.
   [[nodiscard]] static std::vector<Fit> fit_nodes(const SolveMesh& m) {
-    constexpr double penalty = 0.05 * 0.05;
     std::vector<std::vector<std::uint32_t>> ring(m.nodes.size());
     for (const auto& t : m.nodes_of)
       for (std::size_t c = 0; c < 3; ++c) {
@@ -108,7 +107,8 @@ class EdgeBend {
       std::vector<Row> rows;
       for (auto j : near) {
         const double facing = m.nodes[j].normal.dot(node.normal);
-        if (m.nodes[j].vertex == node.vertex || facing < 0.3) continue;  // round the corner
+        if (m.nodes[j].vertex == node.vertex || facing < setup::curvature_cosine)
+          continue;  // round the corner
         const Vec3d d = (m.vertices[m.nodes[j].vertex] - x) / node.size;
         const double p = d.dot(t1), q = d.dot(t2), w = facing / d.squaredNorm();
         const Row row{m.nodes[j].vertex, w * w, {p, q, 0.5 * p * p, p * q, 0.5 * q * q}};
@@ -116,8 +116,9 @@ class EdgeBend {
           for (std::size_t c = 0; c <= r; ++c) A.at(r, c) += row.weight * row.by[r] * row.by[c];
         rows.push_back(row);
       }
-      const double slopes = A.at(0, 0) + A.at(1, 1) + 1e-30;
-      for (std::size_t r = 0; r < 5; ++r) A.at(r, r) += (r < 2 ? 1e-9 : penalty) * slopes;
+      const double slopes = A.at(0, 0) + A.at(1, 1) + setup::no_weight;
+      for (std::size_t r = 0; r < 5; ++r)
+        A.at(r, r) += (r < 2 ? setup::slope_penalty : setup::curvature_penalty) * slopes;
       if (!A.factor(5)) fail_at("EdgeBend", "neighbours must be finite", "node", k);
       for (const Row& row : rows) {
         for (std::size_t r = 0; r < 5; ++r) A.b[r] = row.weight * row.by[r];

@@ -4,7 +4,8 @@
 /// @file Where a response field can be touched: the solve mesh's surface, cut into triangles between places
 /// of loads. Made by load_places.hpp.
 
-#include <palpate/response/setup/smooth_surface.hpp>
+#include <palpate/config.hpp>
+#include <palpate/geometry/bvh.hpp>
 
 #include <optional>
 #include <span>
@@ -135,50 +136,9 @@ class TouchMesh {
     }
   }
 
-  void index() {
-    MeshData<double> mesh;
-    mesh.triangles = triangles_;
-    for (const auto& n : nodes_) mesh.vertices.push_back(n.source);
-    bvh_.emplace(mesh);
-    find_neighbours();
-    Vec3<double> high = low_ = mesh.vertices[0];
-    for (const auto& v : mesh.vertices) {
-      low_ = low_.cwiseMin(v);
-      high = high.cwiseMax(v);
-    }
-    const Vec3<double> size = ((high - low_) / cells).cwiseMax(1e-3 * (high - low_).maxCoeff() + 1e-30);
-    per_size_ = size.cwiseInverse();
-    start_.resize(cells * cells * cells);
-    for (int i = 0; i < cells; ++i)
-      for (int j = 0; j < cells; ++j)
-        for (int k = 0; k < cells; ++k) {
-          const Vec3<double> centre = low_ + Vec3<double>(i + 0.5, j + 0.5, k + 0.5).cwiseProduct(size);
-          start_[cell(centre)] = bvh_->closest(centre).triangle;
-        }
-  }
-  // The triangle beyond the edge opposite to each corner; itself where there is none.
-  void find_neighbours() {
-    struct Side {
-      std::uint64_t key;
-      std::uint32_t triangle, corner;
-    };
-    std::vector<Side> sides;
-    across_.resize(triangles_.size());
-    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-      across_[t] = {t, t, t};
-      for (std::uint32_t c = 0; c < 3; ++c)
-        sides.push_back({detail::edge_key(triangles_[t][(c + 1) % 3], triangles_[t][(c + 2) % 3]), t, c});
-    }
-    std::sort(sides.begin(), sides.end(), [](const Side& l, const Side& r) {
-      return l.key < r.key || (l.key == r.key && l.triangle < r.triangle);
-    });
-    for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-      const Side &l = sides[i], &r = sides[i + 1];
-      if (l.key != r.key) continue;
-      across_[l.triangle][l.corner] = r.triangle;
-      across_[r.triangle][r.corner] = l.triangle;
-    }
-  }
+  // Everything that follows from nodes and triangles.
+  void index();
+  void find_neighbours();
   [[nodiscard]] std::size_t cell(const Vec3<double>& x) const noexcept {
     std::size_t at = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -200,3 +160,7 @@ class TouchMesh {
 };
 
 }  // namespace palpate
+
+#ifndef PALPATE_COMPILED
+#include <palpate/response/setup/load_mesh_impl.hpp>
+#endif

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file Loads that pull a patch apart or turn it, and what the body's correction answers; for the patch
+/// table.
+///
+/// | number | load of unit moment on the flat disc's weight, p from its centre          | as a tensor A        |
+/// |--------|---------------------------------------------------------------------------|----------------------|
+/// | 0      | radial double force, sum p.f = 1                                          | I                    |
+/// | 1, 2   | shears s = t1 t1 - t2 t2, t1 t2 + t2 t1, moment sum f p^T = s / 2         | s                    |
+/// | 3, 4   | tilts along t1, t2, m the inward normal, sum p (f.m) = t                  | 2 m t^T              |
+/// t1 = perpendicular(normal), t2 = normal x t1. A node of weight g at p has the force A q, q = g p / sum g
+/// p^2, less where part of the patch is held: none from half on.
+
+#include <palpate/response/setup/constants.hpp>
+#include <palpate/response/tick/load_mesh.hpp>
+
+namespace palpate {
+
+/// Of a patch around a node, mu = 1.
+struct MomentRow {
+  float mean[5][3] = {};  ///< means of the loads' fields w [1/m^2]
+  float own[15] = {};     ///< their moments, lower triangle by row [1/m^3]
+  float sag = 0;          ///< how deep the patch's edge lies below its plane, at most [m]
+  float droop = 0;        ///< in the mean [m]
+};
+
+namespace detail {
+
+/// each(node, q) of the nodes that share a load around node k; none where they are one place.
+template <class Each>
+void each_moment(const TouchMesh& touch, std::size_t k, std::span<const TouchMesh::Share> shares,
+                 const Each& each) noexcept {
+  const TouchNode& node = touch.nodes()[k];
+  const auto offset = [&](const TouchMesh::Share& s) {
+    return tangential(Vec3<double>(touch.nodes()[s.node].source - node.source), node.normal);
+  };
+  double sum = 0, square = 0;
+  Vec3<double> first = Vec3<double>::Zero();
+  for (const TouchMesh::Share& s : shares) {
+    const Vec3<double> p = offset(s);
+    sum += double(s.weight);
+    first += double(s.weight) * p;
+    square += double(s.weight) * p.squaredNorm();
+  }
+  square -= first.squaredNorm() / (std::max)(sum, setup::min_weight);
+  if (!(square > setup::min_second_moment * node.spacing * node.spacing)) return;
+  const Vec3<double> centre = first / sum;
+  const double t = std::clamp(2 * sum - 1, 0.0, 1.0), unit = t * t * (3 - 2 * t) / square;
+  for (const TouchMesh::Share& s : shares)
+    each(s.node, Vec3<double>(double(s.weight) * unit * (offset(s) - centre)));
+}
+
+}  // namespace detail
+}  // namespace palpate
