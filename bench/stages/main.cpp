@@ -77,7 +77,7 @@ int main(int argc, char** argv) {
     for (std::size_t f = 0; f < partition.faces().size(); ++f) {
       const std::size_t count = partition.faces()[f].count;
       detail::with_weights(partition, load.at, f, 0, [count](const auto& of) {
-        for (std::size_t i = 0; i < count; i += detail::LaneGroup<float>::lanes) {
+        for (std::size_t i = 0; i < count; i += detail::simd_group<float>::size()) {
           const auto w = of.at(i);
           use(w);
         }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The field is drawn in the servo loop, where an exception has nowhere to go.
-// expect: HasAdd
+// expect: HasDisplacement
 // expect: noexcept
 #include <palpate/luo_xiao/interpolation/concept.hpp>
 
@@ -12,20 +12,15 @@
 
 struct Stiff {
   using Scalar = float;
-  struct Load {};
-  const palpate::FacePartition<float>& partition() const noexcept { return *faces; }
-  void prepare(std::span<const palpate::Vec3<float>>, const palpate::ContactDisplacement<float>&,
-               Load&) const noexcept {}
-  bool moves(const Load&, std::size_t) const noexcept { return false; }
-  bool same(const Load&, const Load&, std::size_t) const noexcept { return true; }
-  void add(const Load&, std::size_t, std::size_t, std::size_t, const float*,
-           const palpate::Lists<const float>&, const palpate::Lists<float>&) const MAY_THROW {}
-  const palpate::FacePartition<float>* faces = nullptr;
+  palpate::Vec3<float> displacement(std::span<const float>, std::span<const palpate::FaceCorner<float>>,
+                                    const palpate::Vec3<float>&) const MAY_THROW {
+    return palpate::Vec3<float>::Zero();
+  }
 };
 
-template <palpate::Interpolation I>
+template <palpate::VertexInterpolation I>
 struct Field {
   I interpolation;
 };
 
-int main() { return Field<Stiff>{}.interpolation.moves({}, 0) ? 1 : 0; }
+int main() { return Field<Stiff>{}.interpolation.displacement({}, {}, {}).isZero() ? 0 : 1; }

@@ -5,7 +5,7 @@
 ///
 /// An example is a type with
 ///     template <class T> static Theory<T> make(T pressure);   // in units of `pressure` pascals
-///     static long double tip(E, nu, S, I, l);                 // its tip compliance [m/N] from the literature
+///     static long double tip(E, nu, S, I, l);                 // tip compliance [m/N], from the literature
 
 #include "support/check.hpp"
 

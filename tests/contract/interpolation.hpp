@@ -16,7 +16,7 @@
 namespace palpate::test {
 
 /// The field of one load at all slots.
-template <Interpolation I>
+template <BlockInterpolation I>
 [[nodiscard]] std::vector<Vec3<typename I::Scalar>> field_of(const I& interpolation,
                                                              const typename I::Load& load) {
   using S = typename I::Scalar;
@@ -38,7 +38,7 @@ template <Interpolation I>
   return field;
 }
 
-template <Interpolation I>
+template <BlockInterpolation I>
 [[nodiscard]] std::vector<Vec3<typename I::Scalar>> field_of(
     const I& interpolation, const std::vector<Vec3<typename I::Scalar>>& corners,
     const ContactDisplacement<typename I::Scalar>& contact) {
@@ -55,7 +55,7 @@ template <Real S>
   return slot;
 }
 
-/// `Make` is a callable FacePartition<S> -> interpolation. `tolerance` in units of the largest displacement.
+/// `Make` is a callable FacePartition<S> -> interpolation. `tolerance` in units of the max displacement.
 template <class Body, class Make>
 void check_interpolation(const Body& body, const Make& make, long double tolerance) {
   using S = typename Body::Scalar;
@@ -83,16 +83,16 @@ void check_interpolation(const Body& body, const Make& make, long double toleran
   for (auto& u : corners) u = vector(1e-3);
   ContactDisplacement<S> contact{
       .position = position, .normal = shading_normal(body, position), .displacement = vector(4e-3)};
-  const S largest = S(4e-3);
+  const S max_size = S(4e-3);
   const auto field = field_of(interpolation, corners, contact);
 
   // The corners and the contact keep their own displacements.
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3<S> u = field[slot_of(partition, at_corner + static_cast<std::uint32_t>(i))];
     INFO("corner ", i);
-    CHECK((u - corners[i]).norm() <= tolerance * largest);
+    CHECK((u - corners[i]).norm() <= tolerance * max_size);
   }
-  CHECK((field[slot_of(partition, at_contact)] - contact.displacement).norm() <= tolerance * largest);
+  CHECK((field[slot_of(partition, at_contact)] - contact.displacement).norm() <= tolerance * max_size);
 
   // Zero load, and no load at all: exactly zero everywhere, and said so.
   typename I::Load nothing, zero;
@@ -167,7 +167,7 @@ void check_interpolation(const Body& body, const Make& make, long double toleran
   for (std::uint32_t vertex = 0; vertex < mesh.vertices.size(); ++vertex) {
     const Vec3<S> u = field[slot_of(partition, vertex)],
                   v = turned_field[slot_of(turned_interpolation.partition(), vertex)];
-    worst = std::max(worst, static_cast<long double>((turn * u - v).norm() / largest));
+    worst = std::max(worst, static_cast<long double>((turn * u - v).norm() / max_size));
   }
   // The fields' slope with respect to positions is up to 1/fade, so their rounding counts ten times.
   CHECK(worst <= 20 * tolerance);

@@ -14,9 +14,9 @@ namespace {
 
 using S = double;
 
-/// Largest |change of u| / largest displacement, per step / body size, over 10,000 paths of short straight
+/// Max |change of u| / max displacement, per step / body size, over 10,000 paths of short straight
 /// steps; half of the paths start on an edge or a corner of the partition.
-template <Interpolation I, class Body>
+template <BlockInterpolation I, class Body>
 double steepest(const I& interpolation, const Body& body) {
   std::mt19937_64 random(10000);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -60,7 +60,7 @@ double steepest(const I& interpolation, const Body& body) {
   return worst;
 }
 
-template <Interpolation I, class Body>
+template <BlockInterpolation I, class Body>
 void check_paths(const Body& body, double limit) {
   const auto mesh = body.mesh(60);
   const double worst = steepest(I(make_partition(body, mesh)), body);

@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-/// Positions in, unit normals out, all vertices at once; where a vertex's triangles have collapsed, its normal
-/// at rest. Set-up reports a mesh that is not closed.
+/// Positions in, unit normals out, all vertices at once. A vertex whose triangles have collapsed gets its
+/// normal at rest. Set-up reports a mesh that is not closed.
 class MeshNormals {
  public:
   MeshNormals() = default;
@@ -19,17 +19,16 @@ class MeshNormals {
         positions_(std::array{VertexRun{0, vertices}}, normals_.packed_reads(vertices)),
         rest_(vertices) {}
 
-  /// To be filled by the caller: all vertices are one run.
+  /// The caller fills them: all vertices are one run.
   [[nodiscard]] VertexPositions& positions() noexcept { return positions_; }
-  /// The positions are those at rest. Set-up only.
+  /// Takes the present positions as those at rest. Set-up only.
   void keep_rest() noexcept {
     each([this](const auto& vertex, const auto& x, const auto& y, const auto& z) {
-      for (std::uint32_t k = 0; k < detail::entries<std::remove_cvref_t<decltype(x)>>; ++k)
-        rest_[vertex(k)] = {x[k], y[k], z[k]};
+      for (std::uint32_t k = 0; k < x.size(); ++k) rest_[vertex(k)] = {x[k], y[k], z[k]};
     });
   }
 
-  /// The buffer must want normals.
+  /// Writes all normals. Precondition: out.normals is not null.
   template <Real T>
   void write(const VertexBuffer<T>& out) const noexcept {
     each([to = writer(out)](const auto& vertex, const auto& x, const auto& y, const auto& z) {
@@ -41,7 +40,7 @@ class MeshNormals {
     const auto to = writer(out);
     for (std::size_t v = 0; v < rest_.size(); ++v) to.put(v, T(rest_[v].x), T(rest_[v].y), T(rest_[v].z));
   }
-  /// After `VertexPositions::set_four`, before `write`: the positions into the caller's buffer.
+  /// Writes the positions to the caller's buffer: after all `VertexPositions::set_four`, before `write`.
   template <Real T>
   void write_positions(const VertexBuffer<T>& out) noexcept {
     const detail::VertexWriter<T> to(out.positions, out.position_stride);

@@ -10,8 +10,9 @@
 
 namespace palpate {
 
-/// Where vertices are written: your own buffer in your own layout, one vertex per mesh vertex, in the mesh's order.
-/// Strides are in bytes, so positions and normals may sit inside larger vertices; no alignment is asked for.
+/// Where vertices are written: your own buffer in your own layout, one vertex per mesh vertex, in the mesh's
+/// order. Strides are in bytes, so positions and normals may sit inside larger vertices; no alignment is
+/// asked for.
 template <Real T>
 struct VertexBuffer {
   T* positions = nullptr;                       ///< first vertex's x; y and z follow it

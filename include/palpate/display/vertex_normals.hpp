@@ -4,8 +4,8 @@
 /// @file  Area-weighted vertex normals of a closed mesh whose vertices move.
 
 #include <palpate/core/error.hpp>
-#include <palpate/core/float_vector.hpp>
-#include <palpate/core/inverse_root.hpp>
+#include <palpate/core/simd_math.hpp>
+#include <palpate/core/simd_shuffle.hpp>
 #include <palpate/display/vertex_positions.hpp>
 
 #include <algorithm>
@@ -19,9 +19,9 @@
 
 namespace palpate {
 
-/// The ring of neighbours p_0 .. p_{m-1} of every vertex of a closed mesh, counter-clockwise from outside,
-/// lowest first; an even number: the last one twice, if need be. Set-up only. Reports a mesh whose triangles
-/// do not close around every vertex.
+/// The ring of neighbours p_0 .. p_{m-1} of every vertex of a closed mesh, counter-clockwise seen from
+/// outside. It begins with the lowest number, and is made even by the last neighbour twice. Set-up only.
+/// Reports a mesh whose triangles do not close around every vertex.
 class VertexRings {
  public:
   VertexRings(std::span<const std::array<std::uint32_t, 3>> triangles, std::size_t vertices) {
@@ -76,20 +76,20 @@ class VertexRings {
   std::vector<std::size_t> begin_;
 };
 
-/// The area vectors of a vertex's triangles sum to that of its ring, a closed polygon, in which the vertex
-/// itself cancels. Cut into quadrilaterals from o = p_{m-1} it is
+/// The area vectors of a vertex's triangles sum to that of its ring, a closed polygon. The vertex itself
+/// cancels. The polygon is cut into quadrilaterals from o = p_{m-1}:
 ///
 ///     2 A = sum_{j < m/2 - 1} (p_{2j+1} - o) x (p_{2j+2} - p_{2j})
 ///
-/// two cross products for six neighbours instead of six, and every product is of short vectors. No equation
-/// of the paper; elementary geometry.
+/// That is two cross products for six neighbours instead of six, all of short vectors. No equation of the
+/// paper; elementary geometry.
 ///
-/// In float, whatever the scalar: a position 0.1 m from the origin is known to 4 nm, and a normal between edges
-/// of 1 mm to 1e-5 rad; no display shows more.
+/// In float, whatever the scalar: a position 0.1 m from the origin is known to 4 nm, and a normal between
+/// edges of 1 mm to 1e-5 rad; no display shows more.
 ///
-/// Eight vertices or more in a row whose rings are the same but for a shift by one, and in one run of positions,
-/// are done coordinate by coordinate, as most are in a mesh laid out in rows; the others by fours with rings
-/// of one size, wherever they are.
+/// Eight or more consecutive vertices whose rings are equal but for a shift of all numbers by one, within one
+/// run of positions, are worked out together, coordinate by coordinate: most of a mesh laid out in rows. The
+/// others are gathered by fours with rings of one size, wherever they lie.
 class VertexNormals {
  public:
   /// Vertices that are done together.
@@ -105,7 +105,7 @@ class VertexNormals {
     add(rings, vertices, {0, rings.size()});
   }
   /// Makes a group of vertices, in ascending order, ready. Set-up only. `run`: the one that is in
-  /// VertexPositions when the group's turn comes; without it only packed positions are read.
+  /// VertexPositions when the group's turn comes. Without a run only packed positions are read.
   Group add(const VertexRings& rings, const std::vector<std::uint32_t>& vertices, const VertexRun& run = {}) {
     const Group before = all();
     std::vector<std::uint32_t> others;
@@ -123,7 +123,7 @@ class VertexNormals {
     std::stable_sort(others.begin(), others.end(),
                      [&rings](auto l, auto r) { return rings[l].size() < rings[r].size(); });
     for (std::size_t i = 0; i < others.size(); ++i) {
-      Four four{{}, static_cast<std::uint32_t>(rings_.size()), size_of(rings[others[i]])};
+      Gathered four{{}, static_cast<std::uint32_t>(rings_.size()), size_of(rings[others[i]])};
       for (std::uint32_t& v : four.vertex) {
         v = others[i];  // the last of its size as often as it takes
         list(rings[v], floats, 0);
@@ -134,7 +134,7 @@ class VertexNormals {
     const Group after = all();
     return {before.row_end, after.row_end, before.four_end, after.four_end};
   }
-  /// Are coordinates read, not only packed positions?
+  /// True if coordinates are read, not only packed positions.
   [[nodiscard]] bool has_rows() const noexcept { return !rows_.empty(); }
   /// All groups.
   [[nodiscard]] Group all() const noexcept {
@@ -144,29 +144,28 @@ class VertexNormals {
   /// For each of the mesh's vertices, 1 if a group reads its packed position.
   [[nodiscard]] std::vector<std::uint8_t> packed_reads(std::size_t vertices) const {
     std::vector<std::uint8_t> reads(vertices);
-    for (const Four& four : fours_) {
+    for (const Gathered& four : fours_) {
       for (std::uint32_t i = four.ring; i < four.ring + 4 * four.size; ++i) reads[rings_[i] / floats] = 1;
     }
     return reads;
   }
 
-  /// emit(vertex, x, y, z) with the unit normals of a register's worth of vertices, number vertex(0),
-  /// vertex(1) .., ascending where they are more than four, until all of the group have theirs, some more
-  /// than once. One whose ring has collapsed has the normal rest(vertex).
+  /// Calls emit(vertex, x, y, z) until all vertices of the group have their unit normals. x, y, z are Simd
+  /// with those of the vertices number vertex(0), vertex(1) .., ascending where they are more than four. A
+  /// vertex may come more than once. One whose ring has collapsed gets the normal rest(vertex).
   template <class Rest, class Emit>
   void each_unit(const Group& group, const VertexPositions& positions, const Rest& rest,
                  const Emit& emit) const noexcept {
     each<true>(group, positions, rest, emit);
     each<false>(group, positions, rest, emit);
   }
-  /// The same for those of a group that are read coordinate by coordinate: its run must be there, and nothing
-  /// else.
+  /// The same for those of a group that are read coordinate by coordinate. Only its run needs to be there.
   template <class Rest, class Emit>
   void each_in_row(const Group& group, const VertexPositions& positions, const Rest& rest,
                    const Emit& emit) const noexcept {
     each<true>(group, positions, rest, emit);
   }
-  /// And for the others: all packed positions must be there.
+  /// The same for the others. All packed positions must be there.
   template <class Rest, class Emit>
   void each_apart(const Group& group, const VertexPositions& positions, const Rest& rest,
                   const Emit& emit) const noexcept {
@@ -174,11 +173,11 @@ class VertexNormals {
   }
 
  private:
-  struct Row {
+  struct Row {  // consecutive vertices
     std::uint32_t vertex, count;
-    std::uint32_t ring, size;  // of the first one: where its neighbours' positions in the run are listed
+    std::uint32_t ring, size;  // where the first one's neighbours, by number in the run, are listed
   };
-  struct Four {
+  struct Gathered {  // four vertices from anywhere
     std::array<std::uint32_t, 4> vertex;
     std::uint32_t ring, size;  // where the first one's neighbours' positions are listed; the others follow
   };
@@ -194,7 +193,7 @@ class VertexNormals {
       rings_.push_back(unit * (neighbour - static_cast<std::uint32_t>(from)));
     return begin;
   }
-  // How many from the first vertex on have the same ring but for a shift by one, all of it in the run.
+  // How many vertices from the first one on have its ring but for a shift of one each, all of it in the run.
   [[nodiscard]] static std::size_t row_from(const VertexRings& rings, std::span<const std::uint32_t> vertices,
                                             const VertexRun& run) {
     const auto first = rings[vertices[0]];
@@ -212,24 +211,24 @@ class VertexNormals {
   }
 
   // 2 A in the order z, x, y.
-  [[nodiscard]] static PALPATE_INLINE detail::Float4 area(const float* p, const std::uint32_t* ring,
-                                                          std::uint32_t size) noexcept {
-    using detail::Float4, detail::load_vector, detail::rotated;
-    const Float4 o = load_vector<Float4>(p + ring[size - 1]);
-    Float4 here = load_vector<Float4>(p + ring[0]), sum{};
+  [[nodiscard]] static PALPATE_INLINE detail::Simd4 area(const float* p, const std::uint32_t* ring,
+                                                         std::uint32_t size) noexcept {
+    using detail::Simd4, detail::load, detail::rotated;
+    const Simd4 o = load<Simd4>(p + ring[size - 1]);
+    Simd4 here = load<Simd4>(p + ring[0]), sum{};
     for (std::uint32_t j = 0; j + 2 < size; j += 2) {
-      const Float4 next = load_vector<Float4>(p + ring[j + 2]), a = load_vector<Float4>(p + ring[j + 1]) - o,
-                   b = next - here;
-      sum += a * rotated(b) - rotated(a) * b;
+      const Simd4 next = load<Simd4>(p + ring[j + 2]), a = load<Simd4>(p + ring[j + 1]) - o, b = next - here;
+      const Simd4 first = a * rotated(b), second = rotated(a) * b;  // the order that fma instructions keep
+      sum += first - second;
       here = next;
     }
     return sum;
   }
-  // 2 A of a register's worth of a row.
+  // 2 A of consecutive vertices, one per entry of V.
   template <class V>
   static PALPATE_INLINE void area(const float* px, const float* py, const float* pz,
                                   const std::uint32_t* ring, std::uint32_t size, V& x, V& y, V& z) noexcept {
-    const auto read = [](const float* from) { return detail::load_vector<V>(from); };
+    const auto read = [](const float* from) { return detail::load<V>(from); };
     const std::uint32_t last = ring[size - 1], first = ring[0];
     const V ox = read(px + last), oy = read(py + last), oz = read(pz + last);
     V hx = read(px + first), hy = read(py + first), hz = read(pz + first);
@@ -239,18 +238,19 @@ class VertexNormals {
       const V nx = read(px + s), ny = read(py + s), nz = read(pz + s);
       const V ax = read(px + q) - ox, ay = read(py + q) - oy, az = read(pz + q) - oz;
       const V bx = nx - hx, by = ny - hy, bz = nz - hz;
-      sx += ay * bz - az * by;
-      sy += az * bx - ax * bz;
-      sz += ax * by - ay * bx;
+      const V yz = ay * bz, zy = az * by, zx = az * bx, xz = ax * bz, xy = ax * by, yx = ay * bx;
+      sx += yz - zy;
+      sy += zx - xz;
+      sz += xy - yx;
       hx = nx, hy = ny, hz = nz;
     }
     x = sx, y = sy, z = sz;
   }
 
-  // Squares of the lengths.
+  // Divides by the lengths, and returns their squares.
   template <class V>
   static PALPATE_INLINE V normalise(V& x, V& y, V& z) noexcept {
-    const V square = x * x + y * y + z * z, scale = detail::inverse_root(square);
+    const V xx = x * x, yy = y * y, zz = z * z, square = xx + yy + zz, scale = detail::inverse_sqrt(square);
     x *= scale, y *= scale, z *= scale;
     return square;
   }
@@ -258,20 +258,23 @@ class VertexNormals {
   PALPATE_FLATTEN void each(const Group& group, const VertexPositions& positions, const Rest& rest,
                             const Emit& emit) const noexcept {
     constexpr float much = (std::numeric_limits<float>::max)();
-    detail::Float4 least{much, much, much, much};  // square of an area
-    const Emit put = emit;  // in registers: what it writes might be any of it otherwise
+    detail::Simd4 min_square = much;  // of an area
+    const Emit put = emit;            // a copy: its members stay in registers while it writes
     each_area<InRow>(group, positions, [&](const auto& vertex, auto& x, auto& y, auto& z) {
-      detail::take_least(least, normalise(x, y, z));
+      const auto square = normalise(x, y, z);
+      detail::for_each_chunk<4>(square, [&](auto, const detail::Simd4& part) PALPATE_INLINE_LAMBDA {
+        min_square = (detail::min)(part, min_square);
+      });
       put(vertex, x, y, z);
     });
-    if ((std::min)({least[0], least[1], least[2], least[3]}) > collapsed) return;
+    if (detail::reduce_min(min_square) > collapsed) return;
     each_area<InRow>(group, positions, [&](const auto& vertex, auto& x, auto& y, auto& z) {
       const auto square = normalise(x, y, z);
       bool any = false;
-      for (std::uint32_t k = 0; k < detail::entries<std::remove_cvref_t<decltype(x)>>; ++k) {
+      for (std::uint32_t k = 0; k < x.size(); ++k) {
         if (square[k] > collapsed) continue;
         const Packed3 normal = rest(vertex(k));
-        x[k] = normal.x, y[k] = normal.y, z[k] = normal.z;
+        x.set(k, normal.x), y.set(k, normal.y), z.set(k, normal.z);
         any = true;
       }
       if (any) emit(vertex, x, y, z);
@@ -297,14 +300,15 @@ class VertexNormals {
   template <class Work>
   PALPATE_INLINE void areas_in_row(const Group& group, const VertexPositions& positions,
                                    const Work& work) const noexcept {
-    using detail::FloatRegister, detail::WideRegister;
+    using Wide = detail::native_simd<float>;
+    using Narrow = detail::simd_at_most<float, 8>;
     for (const Row *at = rows_.data() + group.row_begin, *const end = rows_.data() + group.row_end; at < end;
          ++at) {
       const Row row = *at;
-      if (row.count >= detail::entries<WideRegister>)
-        areas_of<WideRegister>(row, positions, work);
+      if (row.count >= Wide::size())
+        areas_of<Wide>(row, positions, work);
       else
-        areas_of<FloatRegister>(row, positions, work);
+        areas_of<Narrow>(row, positions, work);
     }
   }
   template <class V, class Work>
@@ -313,26 +317,25 @@ class VertexNormals {
     const std::uint32_t* const ring = rings_.data() + row.ring;
     const float *const px = positions.axis(0), *const py = positions.axis(1), *const pz = positions.axis(2);
     with_size(row.size, [&](auto size) {
-      const std::uint32_t last = row.count - detail::entries<V>;
-      for (std::uint32_t from = 0;; from = (std::min)(from + detail::entries<V>, last)) {
+      const std::uint32_t last = row.count - static_cast<std::uint32_t>(V::size());
+      for (std::uint32_t from = 0;; from = (std::min)(from + static_cast<std::uint32_t>(V::size()), last)) {
         V x, y, z;
         area(px + from, py + from, pz + from, ring, size, x, y, z);
         work([first = row.vertex + from](std::uint32_t k) { return first + k; }, x, y, z);
-        if (from == last) break;  // over some of the register before it
+        if (from == last) break;  // the last V overlaps the one before it
       }
     });
   }
   template <class Work>
   PALPATE_INLINE void areas_apart(const Group& group, const VertexPositions& positions,
                                   const Work& work) const noexcept {
-    using detail::Float4;
     const std::uint32_t* const rings = rings_.data();
     const float* const p = &positions.packed()->x;
-    for (const Four *at = fours_.data() + group.four_begin, *const end = fours_.data() + group.four_end;
+    for (const Gathered *at = fours_.data() + group.four_begin, *const end = fours_.data() + group.four_end;
          at < end; ++at) {
-      const Four four = *at;
+      const Gathered four = *at;
       const std::uint32_t* const ring = rings + four.ring;
-      Float4 z, x, y, last;
+      detail::Simd4 z, x, y, last;
       with_size(four.size, [&](auto size) {
         z = area(p, ring, size), x = area(p, ring + size, size), y = area(p, ring + 2 * size, size);
         last = area(p, ring + 3 * size, size);
@@ -343,9 +346,9 @@ class VertexNormals {
   }
 
   std::vector<Row> rows_;
-  std::vector<Four> fours_;
-  std::vector<std::uint32_t>
-      rings_;  // of rows, where in the run; of fours, where their packed positions begin, in floats
+  std::vector<Gathered> fours_;
+  // Neighbours: of rows by number in the run, of fours by where their packed positions begin, in floats.
+  std::vector<std::uint32_t> rings_;
 };
 
 }  // namespace palpate

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Positions and normals into a caller's buffer: one vertex, or four at once.
+/// @file  Positions and normals into a caller's buffer: one vertex, or several at once.
 
-#include <palpate/core/float_vector.hpp>
 #include <palpate/core/scalar.hpp>
+#include <palpate/core/simd_shuffle.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -13,6 +13,12 @@
 
 namespace palpate::detail {
 
+[[nodiscard]] PALPATE_INLINE Simd4 simd_of(Simd4::register_type x) noexcept {
+  Simd4 result;
+  result.native[0] = x;
+  return result;
+}
+
 /// Writes to the vertices of a caller's buffer, by number.
 template <Real T>
 class VertexWriter {
@@ -20,30 +26,33 @@ class VertexWriter {
   VertexWriter(T* to, std::size_t stride) noexcept
       : base_(reinterpret_cast<unsigned char*>(to)), stride_(stride) {}
 
-  /// One by one: gathered on the stack first, the copy would wait for the stores.
+  /// Three copies: one of all three numbers from the stack would wait for the stores to it.
   PALPATE_INLINE void put(std::size_t vertex, T x, T y, T z) const noexcept {
     unsigned char* const at = base_ + stride_ * vertex;
     std::memcpy(at, &x, sizeof(T));
     std::memcpy(at + sizeof(T), &y, sizeof(T));
     std::memcpy(at + 2 * sizeof(T), &z, sizeof(T));
   }
-  /// To vertices number first, first + 1 ..; more than four: into a packed buffer.
+  /// To vertices number first, first + 1 .. Precondition: where x has more than four entries the buffer is
+  /// packed.
   template <class V>
   PALPATE_INLINE void put_row(std::size_t first, const V& x, const V& y, const V& z) const noexcept {
-    if constexpr (entries<V> == entries<Float4>) {
+    if constexpr (V::size() == Simd4::size()) {
       if (!is_packed()) return put_apart([first](std::size_t k) { return first + k; }, x, y, z);
     }
     store_interleaved(base_ + stride_ * first, x, y, z);
   }
   /// To vertices number vertex(0) .. vertex(3).
   template <class Vertex>
-  PALPATE_INLINE void put_four(const Vertex& vertex, Float4 x, Float4 y, Float4 z) const noexcept {
+  PALPATE_INLINE void put_four(const Vertex& vertex, const Simd4& x, const Simd4& y,
+                               const Simd4& z) const noexcept {
     if (in_a_row(vertex)) return store_interleaved(base_ + stride_ * vertex(0), x, y, z);
     put_apart(vertex, x, y, z);
   }
   /// The same for vertices that hardly ever follow each other.
   template <class Vertex>
-  PALPATE_INLINE void put_apart(const Vertex& vertex, Float4 x, Float4 y, Float4 z) const noexcept {
+  PALPATE_INLINE void put_apart(const Vertex& vertex, const Simd4& x, const Simd4& y,
+                                const Simd4& z) const noexcept {
     if constexpr (sizeof(T) == sizeof(float))
       return store_apart(base_ + stride_ * vertex(0), base_ + stride_ * vertex(1),
                          base_ + stride_ * vertex(2), base_ + stride_ * vertex(3), x, y, z);
@@ -52,19 +61,23 @@ class VertexWriter {
     put(vertex(2), T(x[2]), T(y[2]), T(z[2]));
     put(vertex(3), T(x[3]), T(y[3]), T(z[3]));
   }
-  /// To vertices number vertex(0), vertex(1) .., as many as a register holds; more than four ascend.
+  template <class Vertex>
+  PALPATE_INLINE void put_apart(const Vertex& vertex, Simd4::register_type x, Simd4::register_type y,
+                                Simd4::register_type z) const noexcept {
+    put_apart(vertex, simd_of(x), simd_of(y), simd_of(z));
+  }
+  /// To vertices number vertex(0), vertex(1) .., one per entry of x; more than four ascend.
   template <class Vertex, class V>
   PALPATE_INLINE void put_register(const Vertex& vertex, const V& x, const V& y, const V& z) const noexcept {
-    if constexpr (entries<V> == entries<Float4>) {
+    if constexpr (V::size() == Simd4::size()) {
       put_four(vertex, x, y, z);
     } else {
       const std::uint32_t first = vertex(0);
-      if (is_packed() &&
-          vertex(entries<V> - 1) - first == entries<V> - 1)  // as they ascend: none is left out
+      if (is_packed() && vertex(V::size() - 1) - first == V::size() - 1)  // as they ascend: none is left out
         return store_interleaved(base_ + stride_ * first, x, y, z);
-      each_four<V>([&](auto from) PALPATE_INLINE_LAMBDA {
-        put_four([&vertex, from](std::uint32_t k) { return vertex(from + k); }, four_of<from>(x),
-                 four_of<from>(y), four_of<from>(z));
+      for_each_chunk<4>(x, [&](auto from, const Simd4& part) PALPATE_INLINE_LAMBDA {
+        put_four([&vertex, from](std::uint32_t k) { return vertex(from + k); }, part, chunk<4, from>(y),
+                 chunk<4, from>(z));
       });
     }
   }
@@ -74,16 +87,17 @@ class VertexWriter {
                               const S* z) const noexcept {
     if constexpr (sizeof(S) == sizeof(float)) {
       const auto put = [&]<class V>(std::type_identity<V>, std::size_t i) PALPATE_INLINE_LAMBDA {
-        put_row(first + i, load_vector<V>(x + i), load_vector<V>(y + i), load_vector<V>(z + i));
+        put_row(first + i, load<V>(x + i), load<V>(y + i), load<V>(z + i));
       };
-      // The last register over some of the one before it.
+      // The last register overlaps the one before it.
       const auto put_all = [&]<class V>(std::type_identity<V> type) PALPATE_INLINE_LAMBDA {
         std::size_t i = 0;
-        for (; i + entries<V> < count; i += entries<V>) put(type, i);
-        put(type, count - entries<V>);
+        for (; i + V::size() < count; i += V::size()) put(type, i);
+        put(type, count - V::size());
       };
-      if (is_packed() && count >= entries<WideRegister>) return put_all(std::type_identity<WideRegister>{});
-      if (count >= entries<Float4>) return put_all(std::type_identity<Float4>{});
+      if (is_packed() && count >= native_simd<float>::size())
+        return put_all(std::type_identity<native_simd<float>>{});
+      if (count >= Simd4::size()) return put_all(std::type_identity<Simd4>{});
     }
     for (std::size_t i = 0; i < count; ++i)
       put(first + i, static_cast<T>(x[i]), static_cast<T>(y[i]), static_cast<T>(z[i]));
@@ -96,10 +110,10 @@ class VertexWriter {
     for (std::size_t i = 0; i < count;) {
       const std::size_t length = run[i] < count - i ? run[i] : count - i;
       if constexpr (sizeof(S) == sizeof(float)) {
-        if (length < entries<Float4> && i + entries<Float4> <= count) {
-          put_apart([at = vertex + i](std::size_t k) { return at[k]; }, load_vector<Float4>(x + i),
-                    load_vector<Float4>(y + i), load_vector<Float4>(z + i));
-          i += entries<Float4>;
+        if (length < Simd4::size() && i + Simd4::size() <= count) {
+          put_apart([at = vertex + i](std::size_t k) { return at[k]; }, load<Simd4>(x + i),
+                    load<Simd4>(y + i), load<Simd4>(z + i));
+          i += Simd4::size();
           continue;
         }
       }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  The paper's deformation model: skeleton, released ends, interpolation, local neighbourhood, output.
+/// @file  The paper's deformation model (V, VI): skeleton, released ends, interpolation, local neighbourhood,
+/// written to vertices.
 
 #include <palpate/luo_xiao/beam/end_release.hpp>
 #include <palpate/luo_xiao/beam/region_skeletons.hpp>
@@ -15,7 +16,7 @@
 namespace palpate {
 
 /// Contacts to vertices (V, VI): each contact's force is shared among its beams, the released ends give the
-/// u_i of the extremal points, and a `DisplacementField` draws u_i and D.
+/// displacements u_i of the extremal points, and a `DisplacementField` interpolates u_i and D.
 ///
 /// | parameter | role                                                       | default            |
 /// |-----------|------------------------------------------------------------|--------------------|
@@ -29,7 +30,7 @@ namespace palpate {
 ///
 /// Set-up reports extremal points of skeleton and partition that are not the same, in the same order. Source:
 /// [luo2005], V and VI.
-template <class R, Interpolation I, Neighbourhood N = AreaNeighbourhood<typename I::Scalar>>
+template <SkeletonSystem R, Interpolation I, Neighbourhood N = AreaNeighbourhood<typename I::Scalar>>
 class BeamSkeletonDeformation {
  public:
   using Scalar = typename R::Scalar;
@@ -43,7 +44,7 @@ class BeamSkeletonDeformation {
     bool normals{true};               ///< see DisplacementField
   };
 
-  BeamSkeletonDeformation(R regions, I interpolation, N neighbourhood, const MeshData<D>& mesh,
+  BeamSkeletonDeformation(R regions, BlocksOf<I> interpolation, N neighbourhood, const MeshData<D>& mesh,
                           const Params& params)
       : p_(params),
         regions_(std::move(regions)),
@@ -103,7 +104,7 @@ class BeamSkeletonDeformation {
  private:
   static constexpr const char* name = "BeamSkeletonDeformation";
 
-  // Keeps what is drawn of the contacts; false when it is what is drawn already.
+  // Takes the contacts; false when they are those of the last write, in all that is drawn.
   bool take(std::span<const ContactState<S>> contacts) noexcept {
     bool same = contacts.size() == loaded_.size();
     for (std::size_t j = 0; same && j < contacts.size(); ++j)

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Output stage: displacements of corners and contacts to vertices and normals in the caller's buffer.
+/// @file Displacements of corners and contacts to vertices and normals in the caller's buffer (V.A.2, V.B,
+/// VI).
 
 #include <palpate/core/error.hpp>
-#include <palpate/core/lane_group.hpp>
+#include <palpate/core/simd.hpp>
 #include <palpate/display/vertex_writer.hpp>
 #include <palpate/elasticity/concept.hpp>
 #include <palpate/luo_xiao/detail/partition_normals.hpp>
-#include <palpate/luo_xiao/interpolation/concept.hpp>
+#include <palpate/luo_xiao/interpolation/blocks.hpp>
 #include <palpate/luo_xiao/neighbourhood.hpp>
 
 #include <algorithm>
@@ -26,17 +27,19 @@ namespace palpate {
 /// |        | `Params::normals`  | -    | false: none are ever written, and the mesh need not be closed     |
 ///
 /// Several contacts (VI): their fields are added, so a contact that appears with D = 0 and u_i = 0 changes
-/// nothing. What changed is found face by face: a face is written again when one of its corners, or a contact
-/// that splits it, is not bit for bit what it was. Normals are written for its vertices and for their
+/// nothing. Motion is found face by face: a face is written again when one of its corners, or a contact that
+/// splits it, differs in a bit from the last tick. Normals are written for its vertices and for their
 /// neighbours in other faces. With the same input as in the last tick nothing is read or written at all.
 ///
 /// Set-up sizes everything; write() uses no heap and has no state but the last tick's input. One buffer per
 /// object: after a switch to another buffer call write_rest() on it first.
 template <Interpolation I, Neighbourhood N = AreaNeighbourhood<typename I::Scalar>>
+  requires std::same_as<typename I::Scalar, typename N::Scalar>
 class DisplacementField {
  public:
   using Scalar = typename I::Scalar;
   using S = Scalar;
+  using Blocks = BlocksOf<I>;
 
   struct Params {
     std::size_t contacts{4};
@@ -44,7 +47,7 @@ class DisplacementField {
   };
 
   /// `mesh` is the one that the interpolation's partition was made from.
-  DisplacementField(I interpolation, N neighbourhood, const MeshData<S>& mesh, const Params& params = {})
+  DisplacementField(Blocks interpolation, N neighbourhood, const MeshData<S>& mesh, const Params& params = {})
       : p_(params), interpolation_(std::move(interpolation)), neighbourhood_(std::move(neighbourhood)) {
     const FacePartition<S>& partition = interpolation_.partition();
     if (p_.contacts < 1) fail(name, "contacts must be >= 1", static_cast<double>(p_.contacts));
@@ -118,32 +121,32 @@ class DisplacementField {
   }
 
   [[nodiscard]] const FacePartition<S>& partition() const noexcept { return interpolation_.partition(); }
-  [[nodiscard]] const I& interpolation() const noexcept { return interpolation_; }
+  [[nodiscard]] const Blocks& interpolation() const noexcept { return interpolation_; }
   [[nodiscard]] const Params& params() const noexcept { return p_; }
 
  private:
-  using Load = typename I::Load;
+  using Load = typename Blocks::Load;
 
-  using V = detail::LaneGroup<S>;
+  using V = detail::simd_group<S>;
 
-  struct Extent {  // extremes of each lane: as many as any vector flags give
-    using Lanes = std::array<S, 32>;
-    static_assert(V::lanes <= std::tuple_size_v<Lanes>);
-    std::array<Lanes, 3> lower, upper;
+  struct Extent {  // of the written positions, entry by entry of V; 32 is the size of V with any vector flags
+    using Entries = std::array<S, 32>;
+    static_assert(V::size() <= std::tuple_size_v<Entries>);
+    std::array<Entries, 3> lower, upper;
     Extent() noexcept {
-      for (Lanes& of : lower) of.fill((std::numeric_limits<S>::max)());
-      for (Lanes& of : upper) of.fill(std::numeric_limits<S>::lowest());
+      for (Entries& of : lower) of.fill((std::numeric_limits<S>::max)());
+      for (Entries& of : upper) of.fill(std::numeric_limits<S>::lowest());
     }
     PALPATE_INLINE void take(const Lists<const S>& x, std::size_t count) noexcept {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         V low(lower[axis].data()), high(upper[axis].data());
-        for (std::size_t i = 0; i < count; i += V::lanes) {
+        for (std::size_t i = 0; i < count; i += V::size()) {
           const V at(x[axis] + i);
-          low = smaller(low, at);
-          high = larger(high, at);
+          low = (detail::min)(low, at);
+          high = (detail::max)(high, at);
         }
-        low.store(lower[axis].data());
-        high.store(upper[axis].data());
+        low.copy_to(lower[axis].data());
+        high.copy_to(upper[axis].data());
       }
     }
     void write(Moved<S>& moved) const noexcept {
@@ -166,16 +169,16 @@ class DisplacementField {
     PALPATE_INLINE void scale(const Lists<const S>& rest, std::size_t count, S* out) const noexcept {
       const S px = position.x(), py = position.y(), pz = position.z(), per_square = S(1) / (radius * radius),
               reduced = by;
-      for (std::size_t i = 0; i < count; i += V::lanes) {
+      for (std::size_t i = 0; i < count; i += V::size()) {
         const V dx = V(rest[0] + i) - px, dy = V(rest[1] + i) - py, dz = V(rest[2] + i) - pz;
-        const V inside = larger(S(1) - (dx * dx + dy * dy + dz * dz) * per_square, V{});
-        (S(1) - reduced * inside * inside).store(out + i);
+        const V inside = (detail::max)(S(1) - (dx * dx + dy * dy + dz * dz) * per_square, V{});
+        (S(1) - reduced * inside * inside).copy_to(out + i);
       }
     }
     [[nodiscard]] bool operator==(const Reduction&) const noexcept = default;
   };
 
-  // Keeps the input; false when it is the same as in the last tick.
+  // Takes the input; false when it is the same as in the last tick.
   bool take(std::span<const ContactDisplacement<S>> contacts, std::span<const Vec3<S>> corners) noexcept {
     if (std::equal(contacts.begin(), contacts.end(), contacts_.begin(), contacts_.end()) &&
         std::equal(corners.begin(), corners.end(), corners_.begin(), corners_.end()))
@@ -209,7 +212,7 @@ class DisplacementField {
     return false;
   }
 
-  // `count` vertices of a face, from its slot number `from` on, are at `x`.
+  // Writes the positions `x` of `count` vertices of a face, from its slot number `from` on.
   template <Real T>
   PALPATE_INLINE void put(const Face<S>& face, std::size_t from, std::size_t count, const Lists<const S>& x,
                           const VertexBuffer<T>& out) const noexcept {
@@ -248,7 +251,7 @@ class DisplacementField {
   static constexpr const char* name = "DisplacementField";
 
   Params p_;
-  I interpolation_;
+  Blocks interpolation_;
   PALPATE_NO_UNIQUE_ADDRESS N neighbourhood_;
   PartitionNormals<S> normals_;
   std::vector<Load> loads_, previous_;

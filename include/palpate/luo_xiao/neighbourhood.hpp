@@ -1,33 +1,34 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Local neighbourhood (V.B): a larger contact makes a shallower dent under the same force.
+/// @file Local neighbourhood (V.B): a contact over more area makes a shallower dent under the same force.
 ///
-/// | shipped              | factor of D at the contact          | use it when                                      |
-/// |----------------------|-------------------------------------|--------------------------------------------------|
-/// | `AreaNeighbourhood`  | w = 1/(1 + ln(max(1, A/A_ref)))     | the default: does not depend on the tool's mesh  |
-/// | `CountNeighbourhood` | w = 1/(1 + ln n)                    | the paper's, literally; w -> 0 as meshes refine  |
-/// | `NoNeighbourhood`    | 1                                   | absent: no byte, no instruction                  |
+/// | shipped              | factor of D at the contact      | use it when                                  |
+/// |----------------------|---------------------------------|----------------------------------------------|
+/// | `AreaNeighbourhood`  | w = 1/(1 + ln(max(1, A/A_ref))) | default; independent of the tool's mesh       |
+/// | `CountNeighbourhood` | w = 1/(1 + ln n)                | the paper's, literal; w -> 0 in finer meshes |
+/// | `NoNeighbourhood`    | 1                               | absent: no byte, no instruction              |
 ///
 /// Inside radius R of the contact the displacement is that of a contact with D replaced by
 ///
 ///     D (1 - (1 - w) b(r)),  b(r) = (1 - (r/R)^2)^2 for r < R, else 0
 ///
 /// so it is wD at the contact and joins the global shape at R with the same slope (the paper's w inside R
-/// alone would make a step there). b is our own choice: the simplest with b(0) = 1, b(R) = b'(R) = 0 that
-/// needs no root. Absent on purpose: a physical law for a fixed force (a punch sinks as A^(-1/2)); that
+/// alone would make a step there). b is this library's choice: the simplest with b(0) = 1, b(R) = b'(R) = 0
+/// that needs no root. Absent on purpose: a physical law for a fixed force (a punch sinks as A^(-1/2)); that
 /// belongs to the force law.
 
 #include <palpate/core/error.hpp>
 #include <palpate/luo_xiao/interpolation/concept.hpp>
 
 #include <cmath>
+#include <numbers>
 
 namespace palpate {
 
 /// `active` false: nothing else is asked of it.
 template <class N>
-concept Neighbourhood = std::copyable<N> && requires {
+concept Neighbourhood = Real<typename N::Scalar> && std::copyable<N> && requires {
   { N::active } -> std::convertible_to<bool>;
 } && (!N::active || requires(const N& n, const ContactDisplacement<typename N::Scalar>& contact) {
                           { n.factor(contact) } noexcept -> std::same_as<typename N::Scalar>;  // w in (0, 1]
@@ -35,11 +36,11 @@ concept Neighbourhood = std::copyable<N> && requires {
                         });
 
 namespace detail {
-/// The region's radius, taken as round, times two [m].
+/// Twice the radius of a disc of the region's area [m]: R where none is given. V.B leaves R open; beyond two
+/// radii a half-space's displacement has fallen to a quarter of the centre's under a uniform pressure.
 template <Real S>
 [[nodiscard]] inline S twice_region_radius(S area) noexcept {
-  constexpr S pi = S(3.14159265358979323846264338327950288L);
-  return is_finite(area) && area > S(0) ? S(2) * std::sqrt(area / pi) : S(0);
+  return is_finite(area) && area > S(0) ? S(2) * std::sqrt(area / std::numbers::pi_v<S>) : S(0);
 }
 }  // namespace detail
 

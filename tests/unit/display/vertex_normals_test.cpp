@@ -40,8 +40,7 @@ constexpr float nowhere = 7;
 Packed3 at_rest(std::size_t) { return {0, 0, 2}; }
 auto into(std::vector<Vec3<float>>& out) {
   return [&out](const auto& vertex, const auto& x, const auto& y, const auto& z) {
-    for (std::uint32_t k = 0; k < detail::entries<std::remove_cvref_t<decltype(x)>>; ++k)
-      out[vertex(k)] = Vec3<float>(x[k], y[k], z[k]);
+    for (std::uint32_t k = 0; k < x.size(); ++k) out[vertex(k)] = Vec3<float>(x[k], y[k], z[k]);
   };
 }
 std::vector<Vec3<float>> unit_normals(const VertexNormals& normals, const VertexNormals::Group& group,
@@ -99,7 +98,7 @@ TEST_CASE("a group has its own vertices and no others; numbering does not matter
   const VertexRings rings(mesh.triangles, n);
   VertexNormals normals(rings);
   const auto everything = normals.all();
-  CHECK(4 * everything.four_end < n / 2);  // both ways are taken
+  CHECK(4 * everything.four_end < n / 2);  // rows and gathered vertices are both there
   CHECK(everything.four_end > 0);
   const auto whole = unit_normals(normals, everything, positions, n);
   for (const std::size_t count : {0u, 1u, 3u, 4u, 101u}) {
@@ -178,7 +177,7 @@ TEST_CASE("a vertex whose ring has collapsed has its normal at rest, its neighbo
   }
 }
 
-TEST_CASE("positions are the same put in a row or anywhere") {
+TEST_CASE("positions are the same whether set in a row or anywhere") {
   const std::array<std::uint32_t, 8> order{5, 0, 3, 7, 6, 1, 2, 4};
   const auto x = [](std::uint32_t v) { return 0.1F * float(v); };
   const std::vector<std::uint8_t> all(7, 1);
@@ -190,9 +189,9 @@ TEST_CASE("positions are the same put in a row or anywhere") {
   row.set_row(0, 7, at[0], at[1], at[2]);
   row.pack(0);
   for (std::uint32_t first : {0u, 4u}) {
-    detail::Float4 mixed[3];
+    detail::Simd4 mixed[3]{};
     for (std::uint32_t k = 0; k < 4; ++k)
-      for (std::uint32_t axis = 0; axis < 3; ++axis) mixed[axis][k] = x(order[first + k]) + float(axis);
+      for (std::uint32_t axis = 0; axis < 3; ++axis) mixed[axis].set(k, x(order[first + k]) + float(axis));
     anywhere.set_four(&order[first], mixed[0], mixed[1], mixed[2]);
   }
   std::size_t rows = 0;

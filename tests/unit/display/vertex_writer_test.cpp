@@ -44,22 +44,22 @@ TEST_CASE_TEMPLATE(
       for (std::size_t k = 0; k < 3; ++k) position[k].push_back(coordinate(v, k));
     const auto vertex = [&order](std::size_t i) { return order[i]; };
 
-    for (const int way : {1, 2, 3}) {  // by fours in a row or not, by fours, row by row
+    for (const int call : {1, 2, 3}) {  // put_four, put_apart, put_row
       constexpr unsigned char untouched = 0xa5;
       std::vector<unsigned char> bytes(count * stride + 16, untouched);
       const detail::VertexWriter<T> to(reinterpret_cast<T*>(bytes.data()), stride);
       for (std::size_t i = 0; i < count; i += 4) {
         const auto part = [&position, i](std::size_t k) {
-          return detail::load_vector<detail::Float4>(&position[k][i]);
+          return detail::load<detail::Simd4>(&position[k][i]);
         };
         const auto four = [&](std::size_t k) { return vertex(i + k); };
         const auto in_order = [&](std::size_t k) {
-          return detail::Float4{coordinate(std::uint32_t(i), k), coordinate(std::uint32_t(i + 1), k),
-                                coordinate(std::uint32_t(i + 2), k), coordinate(std::uint32_t(i + 3), k)};
+          return detail::Simd4{coordinate(std::uint32_t(i), k), coordinate(std::uint32_t(i + 1), k),
+                               coordinate(std::uint32_t(i + 2), k), coordinate(std::uint32_t(i + 3), k)};
         };
-        if (way == 3)
+        if (call == 3)
           to.put_row(i, in_order(0), in_order(1), in_order(2));
-        else if (way == 1)
+        else if (call == 1)
           to.put_four(four, part(0), part(1), part(2));
         else
           to.put_apart(four, part(0), part(1), part(2));

@@ -49,7 +49,7 @@ TEST_CASE("radius: as given, else twice the region's") {
   CHECK(AreaNeighbourhood<double>({}).radius(c) == 0.0);
 }
 
-TEST_CASE("areas that make no sense: no reduction") {
+TEST_CASE("areas that are not finite or negative: no reduction") {
   const AreaNeighbourhood<double> n({});
   ContactDisplacement<double> c;
   for (const double area :

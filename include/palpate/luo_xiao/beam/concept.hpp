@@ -3,36 +3,36 @@
 
 /// @file What the parts of a beam skeleton must offer (V.A.1). Read this before writing one.
 ///
-/// | beam theory           | tip stiffness across the beam        | use it when                                 |
-/// |-----------------------|--------------------------------------|---------------------------------------------|
-/// | `EulerBernoulli`      | 3 E I / l^3, eq. (4)                 | the default, the paper's                    |
-/// | `Timoshenko`          | 1 / (l^3/(3 E I) + l/(kappa G S))    | beams shorter than about 10 radii           |
+/// | beam theory      | tip stiffness across the beam     | use it when                       |
+/// |------------------|-----------------------------------|-----------------------------------|
+/// | `EulerBernoulli` | 3 E I / l^3, eq. (4)              | the default, the paper's          |
+/// | `Timoshenko`     | 1 / (l^3/(3 E I) + l/(kappa G S)) | beams shorter than about 10 radii |
 ///
-/// | section               | half-axes along y, z                 | use it when                                 |
-/// |-----------------------|--------------------------------------|---------------------------------------------|
-/// | `CircularSection`     | radius                               | the default                                 |
-/// | `EllipticSection`     | two semi-axes                        | stiffness along and across set apart        |
-/// | `RectangularSection`  | half depth, half width               | ditto; slab-like bodies                     |
+/// | section              | half-axes along y, z   | use it when                          |
+/// |----------------------|------------------------|--------------------------------------|
+/// | `CircularSection`    | radius                 | the default                          |
+/// | `EllipticSection`    | two semi-axes          | stiffness along and across set apart |
+/// | `RectangularSection` | half depth, half width | ditto; slab-like bodies              |
 ///
-/// | section rule          | section of every beam                | use it when                                 |
-/// |-----------------------|--------------------------------------|---------------------------------------------|
-/// | `VolumePreserving`    | circle with sum S l_i = volume       | the default: no parameter but the body's volume |
-/// | `UniformSection<C>`   | the one given                        | a measured or fitted section                |
+/// | section rule        | section of every beam          | use it when                                     |
+/// |---------------------|--------------------------------|-------------------------------------------------|
+/// | `VolumePreserving`  | circle with sum S l_i = volume | the default: no parameter but the body's volume |
+/// | `UniformSection<C>` | the one given                  | a measured or fitted section                    |
 ///
-/// | sharing               | F among the beams                    | use it when                                 |
-/// |-----------------------|--------------------------------------|---------------------------------------------|
-/// | `CommonEnd`           | one end, one displacement: K d = F   | the default; always solvable                |
-/// | `PlanarRatios`        | (6)-(8) as printed, D known          | comparing with the paper, in a plane        |
+/// | sharing        | F among the beams                  | use it when                          |
+/// |----------------|------------------------------------|--------------------------------------|
+/// | `CommonEnd`    | one end, one displacement: K d = F | the default; always solvable         |
+/// | `PlanarRatios` | (6)-(8) as printed, D known        | comparing with the paper, in a plane |
 ///
-/// | regions               | contacts on each other               | use it when                                 |
-/// |-----------------------|--------------------------------------|---------------------------------------------|
-/// | `CoupledRegions`      | one system, shared beams             | the default: reciprocal, continuous         |
-/// | `SuperposedRegions`   | one skeleton each, others held (VI)  | comparing with the paper                    |
+/// | regions             | contacts on each other               | use it when                         |
+/// |---------------------|--------------------------------------|-------------------------------------|
+/// | `CoupledRegions`    | one system, shared beams             | the default: reciprocal, continuous |
+/// | `SuperposedRegions` | one skeleton each, others fixed (VI) | comparing with the paper            |
 ///
 /// Beam frame: origin at the fixed end (the extremal point), x along the beam toward the loaded end (the
 /// contact), y along the part of the load across the beam. A section turns with its load: y is its bending
 /// direction. Absent on purpose: trusses (no bending stiffness), because their system can be singular; large
-/// deflections, because the theory within the skeleton is linear.
+/// deflections, because the skeleton's system is linear.
 
 #include <palpate/core/scalar.hpp>
 #include <palpate/elasticity/isotropic.hpp>
@@ -70,7 +70,7 @@ concept BeamSection =
     Real<typename C::Scalar> && HasArea<C> && HasSecondMoments<C> && HasFlexureShear<C> && std::copyable<C>;
 
 namespace detail {
-/// The least that is a section, for stating what a theory must accept.
+/// A section with no more than the concept asks for: what a theory must accept.
 template <Real S>
 struct AnySection {
   using Scalar = S;

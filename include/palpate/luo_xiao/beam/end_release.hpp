@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Releasing the fixed ends: stress, strain and displacement at the extremal points (V.A.1, (9),
-/// (10)).
+/// @file  Release of the beams' fixed ends: stress, strain (10) and displacement (9) of the extremal points
+/// (V.A.1).
 
 #include <palpate/luo_xiao/beam/section.hpp>
 #include <palpate/luo_xiao/beam/skeleton.hpp>
@@ -12,15 +12,15 @@
 
 namespace palpate {
 
-/// Displacement [m] that the strain at a beam's fixed end gives the point at `arm` [m] from the fixed centre
-/// o:
+/// Equations (9) and (10): displacement [m] that the strain at a beam's fixed end gives the point at `arm`
+/// [m] from the fixed centre o:
 ///
 ///     {sigma}: beam_stress at x = 0, y = z = 0 under F_i;   {eps} = D^-1 {sigma}  (10)
 ///     u_i = R eps_beam R^T (e_i - o)   (9): constant strain from o to e_i and no rotation
 ///
-/// The section's point is its centroid, where the strain is the mean of the section's; bending stress is 0
-/// there and what is left is sigma_x = F_x/S and the flexure shear tau_yx. Written with the vector of F
-/// across the beam, so that no direction y is needed where that is 0.
+/// The stress is taken at the section's centroid, where the strain is the mean of the section's. Bending
+/// stress is 0 there; sigma_x = F_x/S and the flexure shear tau_yx are left. The formula uses the vector of F
+/// across the beam, so that it needs no direction y where that vector is 0. Source: [luo2005], V.A.1.
 template <BeamSection C>
 [[nodiscard]] inline Vec3<double> released_displacement(const C& section,
                                                         const IsotropicElasticity<double>& material,
@@ -37,32 +37,33 @@ template <BeamSection C>
          across * (half * along);
 }
 
-/// Where the contact comes nearer to an extremal point than this part of the longest beam, u_i passes over,
-/// linearly in l_i, to the contact's own D: they are one point then, and the beam's direction is lost.
+/// Part of the longest beam's length. Where the contact is nearer than that to an extremal point, u_i passes
+/// over to the contact's own D, linearly in l_i: at l_i = 0 the two are one point, and the beam has no
+/// direction. Chosen: small, and wide enough for a tick's steps not to jump over it.
 inline constexpr double release_blend = 0.01;
 
 /// Displacements of all extremal points [m], in their order, for a shared load; zeros for one that is not.
 /// `fixed` is o, the bottom centre, which does not move. Continuous in the contact's position.
-template <class K>
+template <ContactSkeleton K>
 inline void release(const K& skeleton, const typename K::Load& load, const Vec3<typename K::Scalar>& fixed,
                     const Vec3<typename K::Scalar>& contact_displacement,
                     std::span<Vec3<typename K::Scalar>> displacements) noexcept {
   using S = typename K::Scalar;
   const auto section = skeleton.section(load);
-  double longest = 0;
-  for (const auto& beam : load.beams) longest = (std::max)(longest, static_cast<double>(beam.length));
+  double max_length = 0;
+  for (const auto& beam : load.beams) max_length = (std::max)(max_length, static_cast<double>(beam.length));
   const std::size_t count = (std::min)(displacements.size(), skeleton.points().size());
   for (std::size_t i = 0; i < count; ++i) {
     displacements[i].setZero();
-    if (!load.shared || !(longest > 0)) continue;
+    if (!load.shared || !(max_length > 0)) continue;
     const auto& beam = load.beams[i];
     const Vec3<double> u =
         released_displacement(section, skeleton.theory().material(), beam.axis.template cast<double>(),
                               beam.force.template cast<double>(),
                               Vec3<double>((skeleton.points()[i] - fixed).template cast<double>()));
-    const double far = (std::min)(1.0, static_cast<double>(beam.length) / (release_blend * longest));
+    const double own = (std::min)(1.0, static_cast<double>(beam.length) / (release_blend * max_length));
     const Vec3<S> result =
-        (far * u + (1 - far) * contact_displacement.template cast<double>()).template cast<S>();
+        (own * u + (1 - own) * contact_displacement.template cast<double>()).template cast<S>();
     if (is_finite(result)) displacements[i] = result;
   }
 }

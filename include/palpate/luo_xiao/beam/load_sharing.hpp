@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  How the beams of one skeleton share the contact force: (6)-(8) and what they really are.
+/// @file  Load sharing: how the contact force divides among the beams of one skeleton, equations (6)-(8).
 
 #include <palpate/core/cholesky.hpp>
 #include <palpate/core/vector.hpp>
@@ -17,7 +17,7 @@ namespace palpate {
 /// reaches (4/3)(l/r)^2.
 struct SkeletonBeam {
   Vec3<double> axis;   ///< x_i: unit, from the extremal point to the contact
-  double length;       ///< l_i [m]; > 0: held above a tiny part of the longest
+  double length;       ///< l_i [m] > 0, at least `Skeleton::min_length` of the longest
   double axial;        ///< ka = E S/l [N/m]
   double transverse;   ///< kt = 3 E I/l^3 or the theory's [N/m]
   Vec3<double> force;  ///< F_i at the common end [N]: the result
@@ -30,8 +30,8 @@ struct SkeletonBeam {
 
 namespace detail {
 
-/// The stiffest beam's compliance C = K_s^-1 and its root W. All systems are solved for W^-1 d: the matrix
-/// W K W = 1 + ... is then finite and well conditioned however short that beam is.
+/// The root W of the shortest beam's compliance, W W = K_s^-1. All systems are solved for W^-1 d: their
+/// matrix W K W = 1 + ... is finite and well conditioned however short that beam is.
 struct BeamScale {
   std::size_t index;
   Vec3<double> axis;
@@ -66,10 +66,14 @@ inline void add_scaled(const SkeletonBeam& beam, const BeamScale& a, const BeamS
 ///
 ///     K_i = ka_i x^ x^^T + kt_i (1 - x^ x^^T),   K = sum K_i,   K d = F,   F_i = K_i d
 ///
-/// The ratios (6), (7) and the sum (8) then hold for any number of beams, in space. K is positive definite
-/// for n >= 1; cond(K) <= max over beams of ka/kt and kt/ka, (4/3)(l/r)^2 for slender circles. A beam of
-/// length 0 takes the whole load. d is not the contact's D (median 15 degrees apart): the skeleton only
-/// shares F.
+/// The ratios (6), (7) and the sum (8) then hold for any number of beams, in space:
+///
+///     F_x1 : .. : F_xn = x_1/l_1 : .. : x_n/l_n  (6),  F_y1 : .. : F_yn = y_1/l_1^3 : .. : y_n/l_n^3  (7)
+///     sum F_i = F  (8)
+///
+/// K is positive definite for n >= 1; cond(K) <= max over beams of ka/kt and kt/ka, (4/3)(l/r)^2 for slender
+/// circles. A beam of length 0 takes the whole load. d is not the contact's D (median 15 degrees apart): the
+/// skeleton only shares F. Source: [luo2005], V.A.1, equations (4)-(8).
 struct CommonEnd {
   /// Sets the beams' forces and d [m]; false when the numbers leave the range of double.
   [[nodiscard]] static bool share(std::span<SkeletonBeam> beams, const Vec3<double>& F,
@@ -95,7 +99,7 @@ struct CommonEnd {
     if (!system.solve(3)) return false;
     d = s.root(Vec3<double>(system.b[0], system.b[1], system.b[2]));
 
-    Vec3<double> rest = F;  // the stiffest beam's share as the rest: exact where K_i d is 0 times infinity
+    Vec3<double> rest = F;  // the shortest beam takes the rest: exact where K_i d is 0 times infinity
     for (std::size_t i = 0; i < beams.size(); ++i) {
       if (i == s.index) continue;
       beams[i].force = end_force(beams[i], d);
@@ -113,11 +117,13 @@ struct CommonEnd {
 ///
 /// For the plane only: in space (8) is three equations. Even there it has no unique answer for a skeleton
 /// symmetric about D (rank 1: the cube's top centre, the ellipsoid's pole), and unequal beams may push the
-/// wrong way. `share` says no, and every F_i is 0, unless the two columns differ in direction by more than
-/// `min_angle` and F lies in their plane to within `max_residual`.
+/// wrong way. `share` returns false, and every F_i is 0, unless the vectors of c_x and c_y differ in
+/// direction by more than `min_angle` and F lies in their plane to within `max_residual`.
 struct PlanarRatios {
-  static constexpr double min_angle = 1e-6;     ///< [rad]
-  static constexpr double max_residual = 1e-6;  ///< of |F|: float coordinates are no flatter
+  /// [rad]; below, c_x and c_y lose six of their 16 digits.
+  static constexpr double min_angle = 1e-6;
+  /// Of |F|; coordinates in float are no flatter than that.
+  static constexpr double max_residual = 1e-6;
 
   [[nodiscard]] static bool share(std::span<SkeletonBeam> beams, const Vec3<double>& F, const Vec3<double>& D,
                                   Vec3<double>& d) noexcept {

@@ -1,25 +1,28 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  The skeletons of several contact regions, and the force that they pass on to each other (VI).
+/// @file  Skeletons of several contact regions, and the forces that they transmit to each other (VI).
 
 #include <palpate/luo_xiao/beam/skeleton.hpp>
 
 #include <algorithm>
 #include <array>
 #include <span>
+#include <type_traits>
+#include <utility>
 
 namespace palpate {
 
 /// One system for all contacts, each two of which share one beam:
 ///
-///     K_jj = sum_i K_ji + sum_k a_jk K_jk,   K_jk block = -a_jk K_jk,   K d = F   (3m x 3m, positive definite)
+///     K d = F  (3m x 3m, positive definite)
+///     K_jj = sum_i K_ji + sum_k a_jk K_jk,   block (j, k) of K = -a_jk K_jk
 ///     a_jk = min(N_j, N_k) / max(N_j, N_k),  N the regions' normal forces
 ///
-/// Symmetric, so d_j under a force at k equals d_k under that force at j (for given a_jk). The share a_jk of
-/// the beam is our own choice: a region that appears with zero force then changes nothing, and never receives
-/// more than its own force's order; with whole beams, as in the paper, it would be given a finite force at
-/// once.
+/// The system is symmetric, so d_j under a force at k equals d_k under that force at j (for given a_jk). The
+/// share a_jk of the beam is this library's choice: a region that appears with zero force then changes
+/// nothing and receives no more than its own force's order. With whole beams, as in the paper, it would
+/// receive a finite force at once.
 struct CoupledRegions {
   static constexpr bool coupled = true;
   [[nodiscard]] static double share_of_beam(double a, double b) noexcept {
@@ -28,9 +31,9 @@ struct CoupledRegions {
   }
 };
 
-/// The paper's: one skeleton per contact, in which the other contacts are fixed ends; each is solved alone.
-/// The beam between two contacts has each one's own section in its skeleton, so the two do not answer each
-/// other alike, and a second region appears with a jump (docs/beams.md has both figures).
+/// The paper's form: one skeleton per contact, in which the other contacts are fixed ends; each is solved
+/// alone. The beam between two contacts has each one's own section in its skeleton, so the compliance is not
+/// reciprocal, and a second region appears with a jump (docs/beams.md has both figures).
 struct SuperposedRegions {
   static constexpr bool coupled = false;
   [[nodiscard]] static double share_of_beam(double, double) noexcept { return 1.0; }
@@ -47,10 +50,10 @@ concept RegionCoupling = requires(double a) {
 ///     F_S,j = own force + f_j,   f_j = sum_k a_jk K_jk d_k
 ///
 /// K_jk is the stiffness of the beam between contacts j and k (V.A.1), its section the mean of theirs when
-/// coupled; each contact's skeleton is given the body's whole volume, so its sections do not depend on the
-/// others. Beams between contacts are held at `min_distance` of the sum of a contact's beam lengths,
-/// because closer regions are about to merge.
-template <class K, RegionCoupling G = CoupledRegions, std::size_t M = 8>
+/// coupled. Each contact's skeleton has the body's whole volume, so its sections do not depend on the others.
+/// A beam between contacts is at least `min_distance` of the sum of a contact's beam lengths long, because
+/// closer regions are about to merge. Source: [luo2005], VI.
+template <ContactSkeleton K, RegionCoupling G = CoupledRegions, std::size_t M = 8>
 class RegionSkeletons {
   static_assert(M >= 1 && M <= 32, "palpate::RegionSkeletons: 1 <= M <= 32, the system is on the stack");
 
@@ -70,7 +73,7 @@ class RegionSkeletons {
 
   explicit RegionSkeletons(const K& skeleton) : skeleton_(skeleton) {}
 
-  /// At most M contacts; those beyond are left out.
+  /// Solves for at most M contacts; those beyond are left out.
   void share(std::span<const SkeletonContact<Scalar>> contacts, Result& result) const noexcept {
     const std::size_t m = (std::min)(contacts.size(), M);
     result.loads.set_size(m);
@@ -166,7 +169,8 @@ class RegionSkeletons {
     }
   }
 
-  // Forces of contact j's beams, and what the others pass on to it; its stiffest beam carries the rest.
+  // Forces of contact j's beams, and those that the others transmit to it; its shortest beam carries the
+  // rest.
   [[nodiscard]] bool balance(Contacts contacts, const detail::BeamScale& scale, std::size_t j, std::size_t m,
                              Result& result, const std::array<Vec3<double>, M>& d,
                              typename K::Beams& beams) const noexcept {
@@ -189,6 +193,19 @@ class RegionSkeletons {
 
   K skeleton_;
 };
+
+/// The skeletons of all contacts, as `BeamSkeletonDeformation` takes them. `RegionSkeletons` is the one
+/// shipped.
+template <class R>
+concept SkeletonSystem =
+    ContactSkeleton<std::remove_cvref_t<decltype(std::declval<const R&>().skeleton())>> &&
+    requires(const R& regions, std::span<const SkeletonContact<typename R::Scalar>> contacts,
+             typename R::Result& result) {
+      { regions.skeleton() } noexcept;
+      { regions.share(contacts, result) } noexcept;
+      { decltype(result.loads)::capacity } -> std::convertible_to<std::size_t>;
+    } &&
+    std::copyable<R>;
 
 static_assert(RegionCoupling<CoupledRegions> && RegionCoupling<SuperposedRegions>);
 

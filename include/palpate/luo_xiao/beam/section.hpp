@@ -119,7 +119,8 @@ struct BeamLoad {
 /// the ends:
 ///
 ///     sigma_x = -F_y (l - x) y / I_z + F_x / S
-///     tau_yx  = F_y / (2(1+nu) I_z) [d phi_1/dy + nu z^2 - (1+nu) y^2],  tau_zx = F_y / (2(1+nu) I_z) d phi_1/dz
+///     tau_yx  = F_y / (2(1+nu) I_z) [d phi_1/dy + nu z^2 - (1+nu) y^2]
+///     tau_zx  = F_y / (2(1+nu) I_z) d phi_1/dz
 ///     sigma_y = sigma_z = tau_yz = 0
 ///
 /// The sign of sigma_x is that of three-dimensional elasticity (equilibrium with tau), not that of the scan.

@@ -22,7 +22,7 @@ struct SkeletonContact {
   Vec3<S> position = Vec3<S>::Zero();      ///< on the undeformed surface [m]
   Vec3<S> force = Vec3<S>::Zero();         ///< F on the elastic object: minus the force on the tool [N]
   Vec3<S> displacement = Vec3<S>::Zero();  ///< D [m]
-  S normal_force = 0;                      ///< F_cn >= 0 [N]: how far the contact counts among several
+  S normal_force = 0;                      ///< F_cn >= 0 [N]: the contact's part in `CoupledRegions`
 
   [[nodiscard]] bool operator==(const SkeletonContact&) const noexcept = default;
 };
@@ -49,7 +49,7 @@ struct SkeletonLoad {
 /// | `T`       | beam theory                                     | `EulerBernoulli`     |
 /// | `R`       | section rule                                    | `VolumePreserving`   |
 /// | `P`       | sharing of F                                    | `CommonEnd`          |
-/// | `N`       | most extremal points                            | 64                   |
+/// | `N`       | max extremal points                             | 64                   |
 ///
 /// Reported at set-up: no point, more than N, a coordinate beyond 1e6 m. Points may coincide.
 /// The servo tick calls `share`. Source: [luo2005], V.A.1.
@@ -67,10 +67,11 @@ class Skeleton {
   using Load = SkeletonLoad<S, N>;
   using Beams = FixedVector<SkeletonBeam, N, Spare::undefined>;
 
-  /// Lengths below this part of the longest are held at it: such a beam takes the whole load to rounding.
+  /// Lengths are at least this part of the longest: such a beam takes the whole load to rounding.
   static constexpr double min_length = 1e-15;
-  /// kt is held at this times ka, reached by Euler-Bernoulli at l = r/1155 (with shear it never is): both
-  /// still grow without bound as l -> 0, but their ratio does not, and no digits are lost.
+  /// kt is at most this times ka; Euler-Bernoulli's reaches it at l = r/1155, Timoshenko's never. Both grow
+  /// without bound as l -> 0, but their ratio does not, and no digits are lost. Chosen: far from any real
+  /// beam.
   static constexpr double max_ratio = 1e6;
   static constexpr double max_coordinate = 1e6;  ///< [m]: a contact further out is bad input
 
@@ -111,24 +112,24 @@ class Skeleton {
     return is_usable_position(contact.position) && is_finite(contact.force);
   }
 
-  /// Beams of a contact with their stiffnesses and no force; a contact of no usable position stands at the
-  /// origin. For those who build a system of their own, as `RegionSkeletons` does.
+  /// Beams of a contact with their stiffnesses and no force. A contact whose position is not usable is taken
+  /// at the origin. For systems of several contacts, as `RegionSkeletons`.
   void begin(const SkeletonContact<S>& contact, Beams& beams, Load& load) const noexcept {
     const Vec3<double> position = is_usable_position(contact.position)
                                       ? Vec3<double>(contact.position.template cast<double>())
                                       : Vec3<double>::Zero();
-    double sum = 0, longest = 0;
+    double sum = 0, max_length = 0;
     beams.clear();
     for (const Vec3<S>& point : points_) {
       const Vec3<double> axis = position - point.template cast<double>();
       const double length = axis.norm();  // coordinates are below 1e6 m
       sum += length;
-      longest = (std::max)(longest, length);
+      max_length = (std::max)(max_length, length);
       beams.push_back({axis, length, 0, 0, Vec3<double>::Zero()});
     }
     load.total_length = sum;
     const Section section = rule_.section(sum);
-    const double floor = longest > 0 ? min_length * longest : 1.0;  // all lengths 0: all alike
+    const double floor = max_length > 0 ? min_length * max_length : 1.0;  // all lengths 0: equal shares
     for (SkeletonBeam& beam : beams) {
       if (beam.length >= floor) {
         beam.axis /= beam.length;
@@ -167,5 +168,27 @@ class Skeleton {
   T theory_;
   R rule_;
 };
+
+template <class K>  // what it is made of
+concept HasBeams = Real<typename K::Scalar> && BeamTheory<typename K::Theory> &&
+                   BeamSection<typename K::Section> && requires(const K& skeleton) {
+                     { skeleton.points().size() } noexcept -> std::same_as<std::size_t>;
+                     { skeleton.theory() } noexcept -> std::same_as<const typename K::Theory&>;
+                     { K::max_ratio } -> std::convertible_to<double>;
+                   };
+
+template <class K>  // one contact: beams, their section, a solve elsewhere, and the load that it gives
+concept HasBeamLoad = requires(const K& skeleton, const SkeletonContact<typename K::Scalar>& contact,
+                               typename K::Beams& beams, const Vec3<double>& d, typename K::Load& load) {
+  { K::is_usable(contact) } noexcept -> std::same_as<bool>;
+  { skeleton.begin(contact, beams, load) } noexcept;
+  { skeleton.section(load) } noexcept -> std::same_as<typename K::Section>;
+  { skeleton.finish(beams, d, true, load) } noexcept;
+  { load.beams[0].force } -> std::convertible_to<Vec3<typename K::Scalar>>;
+};
+
+/// The beams of one contact, as `RegionSkeletons` and `release` take them. `Skeleton` is the one shipped.
+template <class K>
+concept ContactSkeleton = HasBeams<K> && HasBeamLoad<K> && std::copyable<K>;
 
 }  // namespace palpate

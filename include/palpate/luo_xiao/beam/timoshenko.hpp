@@ -13,15 +13,15 @@ namespace palpate {
 ///
 ///     y(x) = F_y/(E I_z) (l x^2/2 - x^3/6) + F_y x/(kappa G S),   F_y = y / (l^3/(3 E I_z) + l/(kappa G S))
 ///
-/// | symbol | name     | unit | range    | default                                                            |
-/// |--------|----------|------|----------|--------------------------------------------------------------------|
-/// | kappa  | `kappa`  | -    | (0, 1]   | 6 (1+nu)^2/(7 + 14 nu + 8 nu^2): energy-exact for an end-loaded circle |
+/// | symbol | name    | unit | range  | default                         |
+/// |--------|---------|------|--------|---------------------------------|
+/// | kappa  | `kappa` | -    | (0, 1] | 6 (1+nu)^2/(7 + 14 nu + 8 nu^2) |
 ///
-/// The default is the coefficient with which the tip moves as the exact flexure stresses' energy says (0.857,
-/// 0.851, 0.844 at nu = 0, 0.3, 0.5); for other sections pass `section.shear_coefficient(nu)`. Cowper's
-/// 6(1+nu)/(7+6nu) [cowper1966] rests on another average and is not consistent with those stresses. Along the
-/// beam it is Euler-Bernoulli's. Tends to it for l/r -> infinity. No equation: the paper has no shear.
-/// Reported at set-up: kappa out of its range.
+/// The default is energy-exact for an end-loaded circle: with it the tip moves as the energy of the exact
+/// flexure stresses says (0.857, 0.851, 0.844 at nu = 0, 0.3, 0.5). For other sections pass
+/// `section.shear_coefficient(nu)`. Cowper's 6(1+nu)/(7+6nu) [cowper1966] rests on another average and is not
+/// consistent with those stresses. Along the beam it is Euler-Bernoulli's. Tends to it for l/r -> infinity.
+/// No equation: the paper has no shear. Reported at set-up: kappa out of its range.
 template <Real S>
 class Timoshenko {
  public:

@@ -12,7 +12,7 @@
 
 namespace palpate {
 
-/// All beams are equal circles and together hold the body's volume:
+/// All beams are equal circles and together have the body's volume:
 ///
 ///     S sum l_i = V,   r = sqrt(S / pi)
 ///
@@ -20,10 +20,10 @@ namespace palpate {
 /// |--------|----------|------|-------|
 /// | V      | `volume` | m^3  | > 0   |
 ///
-/// Beams whose lengths sum to less than V^(1/3) would be wider than long: the sum is held there, which also
-/// defines the section at length 0; and it is held below 1e9 m. Reported at set-up: a volume that is not
-/// positive. No equation: reading of "determined by the physical properties as well as the exact parametric
-/// surface" (V.A.1).
+/// Beams whose lengths sum to less than V^(1/3) would be wider than long: the sum is bounded below by that,
+/// which also defines the section at length 0, and above by 1e9 m, so that the radius stays positive.
+/// Reported at set-up: a volume that is not positive. No equation: reading of "determined by the physical
+/// properties as well as the exact parametric surface" (V.A.1).
 template <Real S>
 class VolumePreserving {
  public:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Normals of a partition's vertices, face by face, of those that move.
+/// @file  Normals of a partition's vertices, of the faces that move.
 
 #include <palpate/core/error.hpp>
 #include <palpate/display/vertex_buffer.hpp>
@@ -19,13 +19,13 @@
 
 namespace palpate {
 
-/// Unit normals of a FacePartition's vertices, by slot; one whose triangles have collapsed has the
-/// partition's own normal. A face that moves changes the normals of its vertices and of their neighbours in
-/// other faces.
+/// Unit normals of a FacePartition's vertices, by slot. A vertex whose triangles have collapsed gets its
+/// normal at rest. A face that moves changes the normals of its vertices and of their neighbours in other
+/// faces.
 ///
-/// Put a face's vertices where `positions_from` says, or `position` them, and say `placed`; then `write_in_row`
-/// those that need no other face's, while its positions are in the first cache; `write_apart` the others when
-/// all faces that move are there.
+/// For each face that moves: write its positions to `positions_from`, or give them to `set_positions`; call
+/// `finish_face`; then `write_in_row` writes the normals that depend on this face alone, while its positions
+/// are in the first-level cache. After all of them `write_apart` writes the other normals.
 template <Real S>
 class PartitionNormals {
  public:
@@ -64,15 +64,15 @@ class PartitionNormals {
       inside_.push_back(normals_.add(rings, inside, runs.back()));
       std::sort(around.begin(), around.end());
       around.erase(std::unique(around.begin(), around.end()), around.end());
-      rim_start_.push_back(rim_.size());
+      neighbours_start_.push_back(neighbours_.size());
       for (std::size_t k = 0; k < around.size();) {
         const std::uint32_t f = around[k][0];
         std::vector<std::uint32_t> slots;
         for (; k < around.size() && around[k][0] == f; ++k) slots.push_back(around[k][1]);
-        rim_.push_back({f, normals_.add(rings, slots)});
+        neighbours_.push_back({f, normals_.add(rings, slots)});
       }
     }
-    rim_start_.push_back(rim_.size());
+    neighbours_start_.push_back(neighbours_.size());
     positions_ = VertexPositions(runs, normals_.packed_reads(order.size()));
     for (std::size_t f = 0; f < faces.size(); ++f) {
       set_positions(0, faces[f].count, partition.rest_from(faces[f], 0));
@@ -80,44 +80,43 @@ class PartitionNormals {
     }
   }
 
-  /// Where the vertices of the face to come are put, from its slot number `from` on, in whole groups of
-  /// registers [m].
+  /// The present face's positions [m] from its slot number `from` on, to be written in whole `simd_group`s.
   [[nodiscard]] PALPATE_INLINE Lists<float> positions_from(std::size_t from) noexcept {
     return {positions_.axis(0) + from, positions_.axis(1) + from, positions_.axis(2) + from};
   }
-  /// Where `count` of its vertices are now, from its slot number `from` on [m], if they are not put there
-  /// already.
+  /// Sets `count` of its positions [m], from its slot number `from` on, unless they were written there.
   PALPATE_INLINE void set_positions(std::size_t from, std::size_t count, const Lists<const S>& at) noexcept {
     if constexpr (std::same_as<S, float>) {
       if (at[0] == positions_.axis(0) + from) return;
     }
     positions_.set_row(from, count, at[0], at[1], at[2]);
   }
-  /// It was face f, and all of its vertices are there.
+  /// All positions are set, and were those of face f.
   void finish_face(std::size_t f) noexcept { positions_.pack(f); }
 
-  /// Of face f's vertices those that need no other face's, right after its vertices have been placed.
+  /// Writes the normals of face f that depend on no other face. Call it right after finish_face(f).
   template <Real T>
   PALPATE_FLATTEN void write_in_row(const FacePartition<S>& partition, std::size_t f,
                                     const VertexBuffer<T>& out) const noexcept {
     normals_.each_in_row(inside_[f], positions_, at_rest(partition, f), writer(partition, out));
   }
-  /// Of the faces that moved, moved[f] != 0, the others, and their neighbours in faces that did not.
+  /// Writes the other normals of the faces that moved, moved[f] != 0, and those of their neighbours in faces
+  /// that did not.
   template <Real T>
   PALPATE_FLATTEN void write_apart(const FacePartition<S>& partition, std::span<const std::uint8_t> moved,
                                    const VertexBuffer<T>& out) const noexcept {
     for (std::size_t f = 0; f < moved.size(); ++f) {
       if (!moved[f]) continue;
       normals_.each_apart(inside_[f], positions_, at_rest(partition, f), writer(partition, out));
-      for (std::size_t k = rim_start_[f]; k < rim_start_[f + 1]; ++k)
-        if (!moved[rim_[k].face])
-          normals_.each_apart(rim_[k].vertices, positions_, at_rest(partition, rim_[k].face),
+      for (std::size_t k = neighbours_start_[f]; k < neighbours_start_[f + 1]; ++k)
+        if (!moved[neighbours_[k].face])
+          normals_.each_apart(neighbours_[k].vertices, positions_, at_rest(partition, neighbours_[k].face),
                               writer(partition, out));
     }
   }
 
  private:
-  struct Rim {  // vertices of another face next to this one
+  struct Neighbours {  // vertices of another face next to this one
     std::uint32_t face;
     VertexNormals::Group vertices;
   };
@@ -140,8 +139,8 @@ class PartitionNormals {
 
   VertexNormals normals_;
   std::vector<VertexNormals::Group> inside_;  // by face
-  std::vector<Rim> rim_;
-  std::vector<std::size_t> rim_start_;
+  std::vector<Neighbours> neighbours_;
+  std::vector<std::size_t> neighbours_start_;
   VertexPositions positions_;  // of one face's slots after the other's, and packed
 };
 

@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file What an interpolation must offer: displacements of corners to a field over the display vertices
-/// (V.A.2). Read this before writing one.
+/// @file What an interpolation must offer: displacements of a face's corners to those of the display vertices
+/// over it (V.A.2). Read this before writing one.
 ///
-/// | shipped               | field between the corners                            | use it when                         |
-/// |-----------------------|------------------------------------------------------|-------------------------------------|
-/// | `PhongInterpolation`  | magnitude and angle to the normal vary linearly      | the paper's; keeps bulges round     |
-/// | `LinearInterpolation` | vectors vary linearly                                | fastest; affine fields stay exact   |
-/// | `SmoothInterpolation` | least third-order bending energy (triharmonic)       | no creases at the faces' edges      |
+/// | shipped               | field between the corners         | use it when                       |
+/// |-----------------------|-----------------------------------|-----------------------------------|
+/// | `PhongInterpolation`  | magnitude and angle vary linearly | the paper's; keeps bulges round   |
+/// | `LinearInterpolation` | vectors vary linearly             | fastest; affine fields stay exact |
+/// | `SmoothInterpolation` | min third-order bending energy    | no creases at the faces' edges    |
+///
+/// Your own is a `VertexInterpolation`: one function, of one vertex, in plain numbers. `InterpolationBlocks`
+/// works out the weights in vector registers and calls it vertex by vertex. The shipped ones are
+/// `BlockInterpolation`s: they work on a block of vertices at once, two to five times as fast.
 ///
 /// Corners are the extremal points and one contact point. The fields of several contacts are summed by the
-/// caller, so an interpolation sees one contact at a time; none of its corners is another contact's point, or
-/// a contact that appears at zero force would press a dimple of zero displacement into the others' fields.
-/// Absent on purpose: spherical averages of directions; they iterate, and have no answer for opposite
-/// directions.
+/// caller, so an interpolation sees one contact at a time. No corner is another contact's point: a contact
+/// that appears at zero force would press a dimple of zero displacement into the others' fields. Absent on
+/// purpose: spherical averages of directions; they iterate, and have no answer for opposite directions.
 
 #include <palpate/core/vector.hpp>
 #include <palpate/luo_xiao/interpolation/partition.hpp>
@@ -37,7 +40,7 @@ struct ContactDisplacement {
   [[nodiscard]] bool operator==(const ContactDisplacement&) const noexcept = default;
 };
 
-/// A displacement that can be drawn: finite and below 1e6 m, so that nothing overflows even in a float
+/// A displacement that can be drawn: finite and at most 1e6 m, so that nothing overflows even in a float
 /// buffer.
 template <Real S>
 [[nodiscard]] inline bool is_drawable(const Vec3<S>& u) noexcept {
@@ -49,8 +52,30 @@ template <Real S>
          is_finite(c.points);
 }
 
-template <
-    class I>  // one contact and its corners' displacements, made ready once per tick; must not need the heap
+/// A corner of a face as a `VertexInterpolation` sees it: an extremal point, or the contact.
+template <Real S>
+struct FaceCorner {
+  Vec3<S> displacement;  ///< u_i; of the contact D, reduced by the local neighbourhood (V.B) [m]
+  Vec3<S> normal;        ///< of the undeformed surface there: outward, unit
+};
+
+/// u(v) = displacement(weights, corners, normal) [m] of one vertex v. `weights` and `corners` belong
+/// together; the contact is the last one where it splits the face, and absent where it does not. `normal` is
+/// the undeformed surface's at v.
+template <class I>
+concept HasDisplacement = requires(const I& policy, std::span<const typename I::Scalar> weights,
+                                   std::span<const FaceCorner<typename I::Scalar>> corners,
+                                   const Vec3<typename I::Scalar>& normal) {
+  { policy.displacement(weights, corners, normal) } noexcept -> std::same_as<Vec3<typename I::Scalar>>;
+};
+
+/// What a user writes. Weights are those of `FacePartition`: >= 0, sum 1. What no concept can check: a corner
+/// of weight 0 does not count, one of weight 1 gives its own displacement, corners that all have zero
+/// displacement give exactly zero, and the result is continuous in all of its arguments.
+template <class I>
+concept VertexInterpolation = Real<typename I::Scalar> && HasDisplacement<I> && std::copyable<I>;
+
+template <class I>  // one contact and its corners' displacements, prepared once per tick without the heap
 concept HasLoad = std::default_initializable<typename I::Load> && std::copyable<typename I::Load>;
 
 template <class I>  // the faces and slots that `add` speaks of
@@ -58,9 +83,8 @@ concept HasPartition = requires(const I& field) {
   { field.partition() } noexcept -> std::same_as<const FacePartition<typename I::Scalar>&>;
 };
 
-template <
-    class
-    I>  // corner displacements u_i [m], one per extremal point, and the contact; bad input: nothing moves
+/// Takes corner displacements u_i [m], one per extremal point, and the contact. Bad input: nothing moves.
+template <class I>
 concept HasPrepare =
     requires(const I& field, std::span<const Vec3<typename I::Scalar>> corners,
              const ContactDisplacement<typename I::Scalar>& contact, typename I::Load& load) {
@@ -79,7 +103,7 @@ concept HasSame = requires(const I& field, const typename I::Load& load, std::si
 
 /// to = start + the field of a load that moves the face, at `count` of its slots from number `from` on, at
 /// most `block_size` [m]. `start` and `to` may be the same. `scale`, if not null, multiplies the contact's
-/// displacement per vertex (V.B). All lists are read and written in whole groups of registers (LaneGroup).
+/// displacement per vertex (V.B). All lists are read and written in whole `simd_group`s.
 template <class I>
 concept HasAdd = requires(const I& field, const typename I::Load& load, std::size_t face, std::size_t from,
                           std::size_t count, const typename I::Scalar* scale,
@@ -87,27 +111,15 @@ concept HasAdd = requires(const I& field, const typename I::Load& load, std::siz
   { field.add(load, face, from, count, scale, start, to) } noexcept;
 };
 
-/// Continuous over the surface and in its inputs; D at the contact's position and u_i at the corners; zero
-/// corners and zero D give exactly zero; turning all vectors turns the field.
+/// An interpolation that works on blocks of vertices. Its field is continuous over the surface and in its
+/// inputs; it is D at the contact's position and u_i at the corners; zero corners and zero D give exactly
+/// zero; turning all vectors turns the field.
 template <class I>
-concept Interpolation = Real<typename I::Scalar> && HasLoad<I> && HasPartition<I> && HasPrepare<I> &&
-                        HasMoves<I> && HasSame<I> && HasAdd<I> && std::copyable<I>;
+concept BlockInterpolation = Real<typename I::Scalar> && HasLoad<I> && HasPartition<I> && HasPrepare<I> &&
+                             HasMoves<I> && HasSame<I> && HasAdd<I> && std::copyable<I>;
 
-namespace detail {
-
-/// Do two active loads that hold weights `at`, a value per corner and the contact's give the same on the
-/// face, bit for bit?
-template <Real S, class Load>
-[[nodiscard]] inline bool same_values(const FacePartition<S>& partition, const Load& a, const Load& b,
-                                      std::size_t face) noexcept {
-  const Face<S>& f = partition.faces()[face];
-  for (std::size_t k = 0; k < f.corners; ++k) {
-    if (a.corner[f.corner[k]] != b.corner[f.corner[k]]) return false;
-  }
-  const bool split = partition.share(a.at, face) > S(0) || partition.share(b.at, face) > S(0);
-  return !split || (a.contact == b.contact && a.at.weight == b.at.weight);
-}
-
-}  // namespace detail
+/// Either.
+template <class I>
+concept Interpolation = VertexInterpolation<I> || BlockInterpolation<I>;
 
 }  // namespace palpate

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file The surface cut into faces between its extremal points, and the weights of every display vertex
-/// (V.A.2).
+/// @file Partition of the surface into faces between its extremal points, and the weights of every display
+/// vertex (V.A.2).
 
 #include <palpate/core/aligned_list.hpp>
 #include <palpate/core/error.hpp>
@@ -23,7 +23,7 @@
 
 namespace palpate {
 
-/// Most corners of one face; larger flat facets are cut into triangles.
+/// Corners of a face at most; flat facets of more corners are cut into triangles.
 inline constexpr std::size_t max_face_corners = 8;
 
 /// A face: a polygon of extremal points, and the run of sorted vertices ("slots") over it.
@@ -31,7 +31,7 @@ template <Real S>
 struct Face {
   std::size_t first = 0, count = 0;  ///< slots first .. first + count - 1
   std::size_t row = 0;               ///< where its slots begin in an AlignedList of all faces
-  std::size_t length = 0;            ///< of its part there: count, in whole groups of registers
+  std::size_t length = 0;            ///< of its part there: count, in whole `simd_group`s
   std::size_t weights = 0;           ///< where its weights start, corner by corner
   std::size_t corners = 0;           ///< 3 .. max_face_corners
   std::array<std::uint32_t, max_face_corners> corner{};  ///< extremal points, counter-clockwise from outside
@@ -48,43 +48,44 @@ struct PointWeights {
   std::array<S, max_extremal_points> weight{};
 };
 
-/// How a contact splits a face: what the weights of the face's vertices need. Corner by corner.
-template <Real S>
+/// How a contact splits a face: what the weights of the face's vertices need, corner by corner. `V`: numbers,
+/// or the same in vector registers.
+template <class V>
 struct FaceSplit {
-  std::size_t corners = 0;
-  S share = 0;                              ///< largest weight of the contact in the face; 0: not split
-  std::array<S, max_face_corners> P{};      ///< weight of the contact's position
-  std::array<S, max_face_corners> per_P{};  ///< 1 / max(P, h)
-  std::array<S, max_face_corners> lift{};   ///< max(0, h - P) / max(P, h)
+  std::size_t corners;
+  V share;                                ///< max weight of the contact in the face; 0: not split
+  std::array<V, max_face_corners> P;      ///< weights of the contact's position
+  std::array<V, max_face_corners> per_P;  ///< 1 / max(P, h)
+  std::array<V, max_face_corners> lift;   ///< max(0, h - P) / max(P, h)
 };
 
 /// Faces and generalized barycentric weights over a surface that is star-shaped about a centre. No equation:
 /// V.A.2 leaves the partition open; docs/shape.md gives the reading and what it rules out.
 ///
 /// Faces: facets of the convex hull of the extremal points' directions from the centre. A flat facet of 4 to
-/// 8 corners stays a polygon (a box has 6 quadrilaterals); one that is not flat in space, or larger, is cut
-/// into triangles fanning from its lowest corner. Weights of a vertex: it is moved along its ray from the
-/// centre into the plane of its face; there barycentric coordinates in a triangle, Wachspress coordinates in
-/// a polygon. >= 0, sum 1, linear along edges (so continuous across faces), 1 at their corner, and they
-/// reproduce affine functions of the point in that plane.
+/// 8 corners stays a polygon (a box has 6 quadrilaterals); one that is not flat in space, or of more corners,
+/// is cut into triangles fanning from its lowest corner. Weights of a vertex: it is projected along its ray
+/// from the centre into the plane of its face; there they are barycentric coordinates in a triangle,
+/// Wachspress coordinates in a polygon. They are >= 0, sum to 1, are linear along edges (so continuous across
+/// faces) and 1 at their corner, and reproduce affine functions of the point in that plane.
 ///
 /// The contact point p with weights P splits its face: vertex v with weights L gets, for the contact,
 ///
 ///     mu(v) = min(1, min_i (L_i + max(0, h - P_i)) / max(P_i, h))
 ///
-/// over all extremal points i; corner i keeps max(0, L_i - mu P_i), scaled so that the sum is 1. With every
+/// over all extremal points i; corner i gets max(0, L_i - mu P_i), scaled so that the sum is 1. With every
 /// P_i either 0 or >= h this is exactly the split of p's face (of both faces where p is on an edge, of all
 /// where it is on a corner). In the band 0 < P_i < h the split of the neighbours fades in, so that the
 /// weights are continuous in p as well as in v, with slope O(1/h).
 ///
 /// | symbol | name             | unit | range                                        |
 /// |--------|------------------|------|----------------------------------------------|
-/// | h      | `fade`           | -    | (0, 1/8), default 0.1                        |
+/// | h      | `fade`           | -    | (0, 1/8), so that some P_i >= h; default 0.1 |
 /// |        | extremal points  | m    | 4 .. 64, distinct, on all sides of the centre |
 /// |        | centre           | m    | inside; default: mean of the extremal points |
 ///
-/// Reports: lists of the wrong length, non-finite entries, a vertex at the centre, points that leave a side
-/// open. Source: [wachspress1975].
+/// Reports: lists of the wrong length, non-finite entries, a vertex at the centre, points that do not
+/// surround the centre. Source: [wachspress1975].
 template <Real S>
 class FacePartition {
  public:
@@ -112,11 +113,11 @@ class FacePartition {
   [[nodiscard]] std::size_t size() const noexcept { return order_.size(); }
   /// The mesh vertex in each slot.
   [[nodiscard]] std::span<const std::uint32_t> order() const noexcept { return order_; }
-  /// How many slots from each one on follow each other in the mesh and are of its face, itself among them; at
-  /// most 255.
+  /// Of each slot, how many from it on are consecutive vertices of the mesh and of its face, itself included;
+  /// at most 255.
   [[nodiscard]] std::span<const std::uint8_t> runs() const noexcept { return runs_; }
-  /// Undeformed coordinate `axis` of the face's slots [m], on a cache line; the last one's again up to
-  /// `Face::length`.
+  /// Undeformed coordinate `axis` of the face's slots [m]. The list begins on a cache line and repeats the
+  /// last slot up to `Face::length`.
   [[nodiscard]] const S* rest(const Face<S>& face, int axis) const noexcept {
     return rest_[static_cast<std::size_t>(axis)].data() + face.row;
   }
@@ -125,12 +126,12 @@ class FacePartition {
                                                         std::size_t from) const noexcept {
     return {rest(face, 0) + from, rest(face, 1) + from, rest(face, 2) + from};
   }
-  /// Component `axis` of the undeformed unit normal of the face's slots; ditto.
+  /// Component `axis` of the undeformed unit normal of the face's slots, laid out alike.
   [[nodiscard]] const S* normal(const Face<S>& face, int axis) const noexcept {
     return normal_[static_cast<std::size_t>(axis)].data() + face.row;
   }
-  /// Weights L of the face's slots at its corner number k; ditto. The next corner's begin `Face::length`
-  /// further.
+  /// Weights L of the face's slots at its corner number k, laid out alike. Those of the next corner begin
+  /// `Face::length` further.
   [[nodiscard]] const S* weights(const Face<S>& face, std::size_t k = 0) const noexcept {
     return weights_.data() + face.weights + k * face.length;
   }
@@ -155,8 +156,7 @@ class FacePartition {
     return at;
   }
 
-  /// Largest share that the contact at `at` has in `face`: 1 in its own face, 0 in faces that it does not
-  /// split.
+  /// Max weight of the contact at `at` over `face`: 1 in its own face, 0 in faces that it does not split.
   [[nodiscard]] S share(const PointWeights<S>& at, std::size_t face) const noexcept {
     if (!at.valid) return S(0);
     const Face<S>& own = faces_[at.face];
@@ -171,7 +171,7 @@ class FacePartition {
   /// How the contact at `at` splits `face`.
   [[nodiscard]] FaceSplit<S> split(const PointWeights<S>& at, std::size_t face) const noexcept {
     const Face<S>& f = faces_[face];
-    FaceSplit<S> split;
+    FaceSplit<S> split{};
     split.corners = f.corners;
     split.share = share(at, face);
     if (!(split.share > S(0))) return split;
@@ -221,7 +221,8 @@ class FacePartition {
     double size = 0;
     for (const Vec3<double>& r : ray) size = (std::max)(size, r.norm());
     for (Vec3<double>& r : ray) r /= size;
-    // Positions given in S are rounded, so what is flat is flat to a few units in the last place only.
+    // Flat to 64 units in the last place of positions in S, and at least to 1e-9 of the size, so that
+    // coordinates written with ten digits count as flat.
     const double flat = (std::max)(1e-9, 64.0 * static_cast<double>(std::numeric_limits<S>::epsilon()));
     for (const detail::Polygon& facet : detail::hull_facets(direction, flat, name)) {
       const Vec3<double> normal =
@@ -253,7 +254,8 @@ class FacePartition {
     cones_.push_back(cone);
   }
 
-  // The face whose nearest side plane is furthest inside; on an edge the earlier face, with the same weights.
+  // The face with the max distance to its nearest side plane, inside; on an edge the first, with the same
+  // weights.
   [[nodiscard]] std::uint32_t face_of(const Vec3<double>& direction) const noexcept {
     std::uint32_t best = 0;
     double inside = -std::numeric_limits<double>::infinity();
@@ -335,7 +337,7 @@ class FacePartition {
 
   static constexpr const char* name = "FacePartition";
 
-  struct Cone {  // of a face, seen from the centre, in units of the largest radius
+  struct Cone {  // of a face, seen from the centre, in units of the max distance
     std::array<Vec3<double>, max_face_corners> edge;  // normal of the plane through the centre and side k
     std::array<double, max_face_corners> corner;      // volume spanned by corners k - 1, k, k + 1
   };
@@ -352,8 +354,8 @@ class FacePartition {
 };
 
 /// The same mesh with its vertices in the partition's order. A partition made from it has order()[i] = i, so
-/// that the output stage writes one vertex after the other instead of jumping through the buffer. Pays mostly
-/// with normals.
+/// that vertices are written one after the other instead of all over the buffer. That pays mostly with
+/// normals.
 template <Real S>
 [[nodiscard]] MeshData<S> sorted_by_face(const MeshData<S>& mesh, const FacePartition<S>& partition) {
   if (mesh.vertices.size() != partition.size())

@@ -3,10 +3,11 @@
 
 /// @file  Phong displacement: the paper's interpolation (V.A.2).
 
-#include <palpate/core/lane_group.hpp>
-#include <palpate/core/lane_sine.hpp>
+#include <palpate/core/simd.hpp>
+#include <palpate/core/simd_math.hpp>
 #include <palpate/luo_xiao/interpolation/concept.hpp>
 #include <palpate/luo_xiao/interpolation/detail/face_weights.hpp>
+#include <palpate/luo_xiao/interpolation/detail/vector_load.hpp>
 
 #include <cmath>
 #include <limits>
@@ -23,27 +24,28 @@ namespace palpate {
 ///
 /// | symbol  | name                    | unit | range                                                    |
 /// |---------|-------------------------|------|----------------------------------------------------------|
-/// | u_i     | corners, and D          | m    | below 1e6; otherwise nothing moves                       |
-/// | theta_i | angle of u_i            | rad  | [0, pi], to the normal at corner i                       |
+/// | u_i     | corners, and D          | m    | at most 1e6; otherwise nothing moves                     |
+/// | theta_i | displacement angle      | rad  | [0, pi], between u_i and the normal at corner i          |
 /// | s_i     | tangential part         | -    | of u_i/|u_i| at corner i                                 |
 /// | n       | `partition().normal()`  | -    | undeformed surface's at the vertex                       |
-/// | g_i     | what a corner lends     | -    | min(1, 16 |u_i| / max_j |u_j|): a corner that stands     |
-/// |         |                         |      | still has no direction and lends none, without a jump    |
+/// | g_i     | weight of a direction   | -    | min(1, 16 |u_i| / max_j |u_j|): a corner of zero         |
+/// |         |                         |      | displacement has no direction; g avoids a jump there     |
 /// | w_i     | weights                 | -    | of `FacePartition`, the contact's among them             |
 ///
-/// Where the tangential directions cancel, t has none: its length is then at most 4 |sum w g s| / sum w g,
-/// and the missing part e of sin theta is taken from the linear interpolation L of the vectors: u = (1 - e)
-/// |u| (...) + e L.
+/// Where the tangential directions cancel, t is undefined. sin theta t is then at most 4 |sum w g s| / sum w
+/// g long, and the missing part e of sin theta is taken from the linear interpolation L of the vectors: u =
+/// (1 - e) |u| (...) + e L. The factors 16 and 4 are chosen: they bound how fast the direction may turn as a
+/// corner or the sum of directions passes through zero (docs/shape.md, continuity in time).
 ///
 /// Limits: not linear in the load; a rigid translation is not reproduced (its angle to the normal differs
-/// from corner to corner); |u| is never above the largest corner's. Source: paper V.A.2; azimuth, g_i and the
-/// fall-back are this library's reading (docs/shape.md).
+/// from corner to corner); |u| is never above the max of the corners. Source: [luo2005], V.A.2; azimuth, g_i
+/// and the fall-back are this library's reading (docs/shape.md).
 template <Real S>
 class PhongInterpolation {
  public:
   using Scalar = S;
 
-  /// What a corner contributes, times its weight: |u|, g, g theta, g s (3), u (3).
+  /// The terms of a corner that are summed with its weight: |u|, g, g theta, g s (3), u (3).
   static constexpr std::size_t terms = 9;
   using Corner = std::array<S, terms>;
 
@@ -63,16 +65,18 @@ class PhongInterpolation {
     load.active = false;
     const auto points = partition_.points();
     if (corners.size() != points.size() || !is_drawable(contact)) return;
-    S largest = stable_norm(contact.displacement);
+    S max_size = stable_norm(contact.displacement);
     for (const Vec3<S>& u : corners) {
       if (!is_drawable(u)) return;
-      largest = (std::max)(largest, stable_norm(u));
+      max_size = (std::max)(max_size, stable_norm(u));
     }
     load.at = partition_.locate(contact.position);
-    if (!load.at.valid || !is_finite(largest) || !(largest > S(16) * (std::numeric_limits<S>::min)())) return;
+    // Below 16 times the least normal number g would lose digits: nothing that a display shows.
+    if (!load.at.valid || !is_finite(max_size) || !(max_size > S(16) * (std::numeric_limits<S>::min)()))
+      return;
     for (std::size_t i = 0; i < corners.size(); ++i)
-      load.corner[i] = terms_of(corners[i], points[i].normal, largest);
-    load.contact = terms_of(contact.displacement, contact.normal, largest);
+      load.corner[i] = terms_of(corners[i], points[i].normal, max_size);
+    load.contact = terms_of(contact.displacement, contact.normal, max_size);
     load.active = true;
   }
 
@@ -102,93 +106,94 @@ class PhongInterpolation {
     const auto reduced = [&](const auto& w, std::size_t i) PALPATE_INLINE_LAMBDA {
       return scale == nullptr ? w.contact() : w.contact() * V(scale + i);
     };
-    // Short loops: their results are far apart, and a long loop would wait for them.
+    // Several short loops: each operation of one long loop would wait for the one before it.
     Sums sum;
     with_weights(partition_, load.at, face, from, [&](const auto& weights) PALPATE_INLINE_LAMBDA {
-      for (std::size_t i = 0; i < count; i += V::lanes) {
+      for (std::size_t i = 0; i < count; i += V::size()) {
         const auto w = weights.at(i);
-        w.sum(value, magnitude, reduced(w, i)).store(&sum[magnitude][i]);
-        unrolled<linear - lent>(
-            [&](std::size_t k) PALPATE_INLINE_LAMBDA { w.sum(value, lent + k).store(&sum[lent + k][i]); });
+        w.sum(value, magnitude, reduced(w, i)).copy_to(&sum[magnitude][i]);
+        unroll<linear - direction>([&](std::size_t k) PALPATE_INLINE_LAMBDA {
+          w.sum(value, direction + k).copy_to(&sum[direction + k][i]);
+        });
       }
     });
     Block<S> missing;
-    turn(count, sum, missing);
+    find_angles(count, sum, missing);
     if (!add_directed(f, from, count, sum, missing, start, to)) return;
     with_weights(partition_, load.at, face, from, [&](const auto& weights) PALPATE_INLINE_LAMBDA {
-      for (std::size_t i = 0; i < count; i += V::lanes) {
+      for (std::size_t i = 0; i < count; i += V::size()) {
         const V part(&missing[i]);
-        if (!any_positive(part)) continue;
+        if (!any_of(part > V{})) continue;
         const auto w = weights.at(i);
         const V contact = reduced(w, i);
-        unrolled<3>([&](std::size_t axis) PALPATE_INLINE_LAMBDA {
-          add_group(to[axis] + i, part * w.sum(value, linear + axis, contact));
+        unroll<3>([&](std::size_t axis) PALPATE_INLINE_LAMBDA {
+          store(to[axis] + i, V(to[axis] + i) + part * w.sum(value, linear + axis, contact));
         });
       }
     });
   }
 
  private:
-  using V = detail::LaneGroup<S>;
-  static constexpr std::size_t magnitude = 0, lent = 1, angle = 2, tangent = 3,
-                               linear = 6;  // positions in Corner
+  using V = detail::simd_group<S>;
+  static constexpr std::size_t magnitude = 0, direction = 1, angle = 2, tangent = 3,
+                               linear = 6;  // entries of a Corner
   using Sums = std::array<Block<S>, linear>;
 
-  // Sums of g and g theta become 1 / g and cos theta.
-  static PALPATE_INLINE void turn(std::size_t count, Sums& sum, Block<S>& sine) noexcept {
+  // Sums of g and g theta become 1 / g and cos theta; sin theta goes to `sine`.
+  static PALPATE_INLINE void find_angles(std::size_t count, Sums& sum, Block<S>& sine) noexcept {
     using namespace detail;
     constexpr S tiny = (std::numeric_limits<S>::min)(), quarter = std::numbers::pi_v<S> / S(2);
-    for (std::size_t i = 0; i < count; i += V::lanes) {
-      // Where nothing is lent nothing moves either.
-      const V per_g = S(1) / larger(V(&sum[lent][i]), V(tiny));
+    for (std::size_t i = 0; i < count; i += V::size()) {
+      // Where g is 0 all magnitudes are 0.
+      const V per_g = S(1) / (max)(V(&sum[direction][i]), V(tiny));
       V s, c;
-      sine_and_cosine<S>(V(&sum[angle][i]) * per_g - quarter, s, c);
-      per_g.store(&sum[lent][i]);
-      (-s).store(&sum[angle][i]);
-      c.store(&sine[i]);
+      sine_and_cosine(V(&sum[angle][i]) * per_g - quarter, s, c);
+      per_g.copy_to(&sum[direction][i]);
+      (-s).copy_to(&sum[angle][i]);
+      c.copy_to(&sine[i]);
     }
   }
 
-  // Adds (1 - e) |u| (cos theta n + sin theta t). In: sin theta; out: what is missing of it, e. Is anything?
+  // Adds (1 - e) |u| (cos theta n + sin theta t). In: `sine` is sin theta; out: e. True if an e is > 0.
   PALPATE_INLINE bool add_directed(const Face<S>& face, std::size_t from, std::size_t count, const Sums& sum,
                                    Block<S>& sine, const Lists<const S>& start,
                                    const Lists<S>& to) const noexcept {
     using namespace detail;
     const S *const nx = partition_.normal(face, 0) + from, *const ny = partition_.normal(face, 1) + from,
                    *const nz = partition_.normal(face, 2) + from;
-    V most_missing{};
-    for (std::size_t i = 0; i < count; i += V::lanes) {
+    V max_missing{};
+    for (std::size_t i = 0; i < count; i += V::size()) {
       const V n[3] = {V(nx + i), V(ny + i), V(nz + i)};
       V t[3] = {V(&sum[tangent][i]), V(&sum[tangent + 1][i]), V(&sum[tangent + 2][i])};  // times g
       const V along_normal = t[0] * n[0] + t[1] * n[1] + t[2] * n[2];
-      unrolled<3>([&](std::size_t k) PALPATE_INLINE_LAMBDA { t[k] = t[k] - along_normal * n[k]; });
-      const V square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2], per_length = inverse_root(square);
-      const V wanted = V(&sine[i]), most = S(4) * V(&sum[lent][i]);
-      // Nothing, not even a rounding, where less than 4 |t| is enough.
-      const V missing = larger(wanted - most * (square * per_length), V{});
+      unroll<3>([&](std::size_t k) PALPATE_INLINE_LAMBDA { t[k] = t[k] - along_normal * n[k]; });
+      const V square = t[0] * t[0] + t[1] * t[1] + t[2] * t[2], per_length = inverse_sqrt(square);
+      const V wanted = V(&sine[i]), max_per_t = S(4) * V(&sum[direction][i]);
+      // Exactly 0 where sin theta is at most 4 |t|.
+      const V missing = (max)(wanted - max_per_t * (square * per_length), V{});
       const V size = V(&sum[magnitude][i]) * (S(1) - missing);
-      const V along = size * V(&sum[angle][i]), aside = size * smaller(wanted * per_length, most);
-      missing.store(&sine[i]);
-      most_missing = larger(most_missing, missing);
-      unrolled<3>([&](std::size_t k) PALPATE_INLINE_LAMBDA {
-        (V(start[k] + i) + (along * n[k] + aside * t[k])).store(to[k] + i);
+      const V along = size * V(&sum[angle][i]), aside = size * (min)(wanted * per_length, max_per_t);
+      missing.copy_to(&sine[i]);
+      max_missing = (max)(max_missing, missing);
+      unroll<3>([&](std::size_t k) PALPATE_INLINE_LAMBDA {
+        (V(start[k] + i) + (along * n[k] + aside * t[k])).copy_to(to[k] + i);
       });
     }
-    return any_positive(most_missing);
+    return any_of(max_missing > V{});
   }
 
-  static Corner terms_of(const Vec3<S>& u, const Vec3<S>& normal, S largest) noexcept {
+  static Corner terms_of(const Vec3<S>& u, const Vec3<S>& normal, S max_size) noexcept {
     const S size = stable_norm(u);
     if (!(size > (std::numeric_limits<S>::min)())) return {};
-    const Vec3<S> n = unit_or<S>(normal, Vec3<S>::UnitY()), direction = u / size,
-                  s = tangential(direction, n);
-    const S g = (std::min)(S(1), S(16) * size / largest), theta = std::atan2(s.norm(), direction.dot(n));
+    const Vec3<S> n = unit_or<S>(normal, Vec3<S>::UnitY()), unit = u / size, s = tangential(unit, n);
+    const S g = (std::min)(S(1), S(16) * size / max_size), theta = std::atan2(s.norm(), unit.dot(n));
     return {size, g, g * theta, g * s.x(), g * s.y(), g * s.z(), u.x(), u.y(), u.z()};
   }
 
   FacePartition<S> partition_;
 };
 
-static_assert(Interpolation<PhongInterpolation<float>> && Interpolation<PhongInterpolation<double>>);
+static_assert(BlockInterpolation<PhongInterpolation<float>> &&
+              BlockInterpolation<PhongInterpolation<double>>);
 
 }  // namespace palpate

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Interpolation of least bending energy: no creases between faces.
+/// @file  Interpolation of minimum bending energy: no creases between faces.
 
-#include <palpate/core/lane_group.hpp>
+#include <palpate/core/simd_math.hpp>
 #include <palpate/luo_xiao/interpolation/concept.hpp>
+#include <palpate/luo_xiao/interpolation/detail/face_weights.hpp>
 #include <palpate/luo_xiao/interpolation/detail/triharmonic.hpp>
 
 #include <utility>
@@ -17,7 +18,7 @@ namespace palpate {
 ///
 /// | symbol | name                  | unit | range                                                       |
 /// |--------|-----------------------|------|-------------------------------------------------------------|
-/// | u_i, D | corners, displacement | m    | below 1e6; otherwise nothing moves                          |
+/// | u_i, D | corners, displacement | m    | at most 1e6; otherwise nothing moves                        |
 /// | L_i    | cardinal functions    | -    | 1 at point i, 0 at the others; set up once                  |
 /// | H      | of the contact at p   | -    | 0 at the extremal points, 1 at p                            |
 ///
@@ -42,7 +43,7 @@ class SmoothInterpolation {
   };
 
   explicit SmoothInterpolation(FacePartition<S> partition)
-      : partition_(std::move(partition)), spline_(positions(partition_)) {
+      : partition_(std::move(partition)), spline_(sites_of(partition_)) {
     const std::size_t n = partition_.list_length();
     kernels_.resize(spline_.size() * n);
     for (AlignedList<S>& list : reduced_) list.resize(n);
@@ -72,7 +73,7 @@ class SmoothInterpolation {
     }
     if (still) return;
     const Vec3<double> p = spline_.reduced(contact.position.template cast<double>());
-    // Beyond this the cubes would swamp the field; a contact is on the surface, so it is never far.
+    // In units of the extent: beyond 10 the cubes would swamp the field. A contact is on the surface, near 1.
     if (!palpate::is_finite(p) || !(p.squaredNorm() < 100)) return;
     std::array<double, max_extremal_points> cardinal, values;
     TriharmonicSpline::Function own, part;
@@ -113,29 +114,30 @@ class SmoothInterpolation {
                            const S* scale, const Lists<const S>& start, const Lists<S>& to) const noexcept {
     const std::size_t first = partition_.faces()[face].row + from;
     const Terms terms(load, spline_.size());
-    for (std::size_t i = 0; i < count; i += V::lanes) {
+    for (std::size_t i = 0; i < count; i += V::size()) {
       if (scale == nullptr) {
         V u[3];
         evaluate(load, terms, first + i, u);
-        detail::unrolled<3>([&](std::size_t axis) PALPATE_INLINE_LAMBDA {
-          (V(start[axis] + i) + u[axis]).store(to[axis] + i);
+        detail::unroll<3>([&](std::size_t axis) PALPATE_INLINE_LAMBDA {
+          (V(start[axis] + i) + u[axis]).copy_to(to[axis] + i);
         });
       } else {
         V u[4];
         evaluate(load, terms, first + i, u);
         const V less = u[3] * (V(scale + i) - S(1));
-        detail::unrolled<3>([&](std::size_t axis) PALPATE_INLINE_LAMBDA {
-          (V(start[axis] + i) + (u[axis] + less * load.contact[static_cast<int>(axis)])).store(to[axis] + i);
+        detail::unroll<3>([&](std::size_t axis) PALPATE_INLINE_LAMBDA {
+          (V(start[axis] + i) + (u[axis] + less * load.contact[static_cast<int>(axis)]))
+              .copy_to(to[axis] + i);
         });
       }
     }
   }
 
  private:
-  using V = detail::LaneGroup<S>;
+  using V = detail::simd_group<S>;
 
   struct Terms {  // coefficients of u_x, u_y, u_z and H
-    using Row = std::array<detail::LaneFactor<S>, 4>;
+    using Row = std::array<detail::simd_factor<S>, 4>;
     std::array<Row, 4> affine;
     Row moving;
     std::array<Row, max_extremal_points> kernel;
@@ -146,8 +148,8 @@ class SmoothInterpolation {
       for (std::size_t j = 0; j < kernels; ++j) kernel[j] = row(load.kernel[j], load.own[j]);
     }
     static PALPATE_INLINE Row row(const Vec3<S>& u, S own) noexcept {
-      using detail::lane_factor;
-      return {lane_factor(u.x()), lane_factor(u.y()), lane_factor(u.z()), lane_factor(own)};
+      using F = detail::simd_factor<S>;
+      return {F(u.x()), F(u.y()), F(u.z()), F(own)};
     }
   };
 
@@ -155,22 +157,22 @@ class SmoothInterpolation {
   template <std::size_t N>
   PALPATE_INLINE void evaluate(const Load& load, const Terms& terms, std::size_t at,
                                V (&u)[N]) const noexcept {
-    using detail::unrolled;
+    using detail::unroll;
     const V vx(&reduced_[0][at]), vy(&reduced_[1][at]), vz(&reduced_[2][at]);
     const V dx = vx - load.position.x(), dy = vy - load.position.y(), dz = vz - load.position.z(),
-            square = dx * dx + dy * dy + dz * dz, moving = square * square * inverse_root(square);
-    unrolled<N>([&](std::size_t k) PALPATE_INLINE_LAMBDA {
+            square = dx * dx + dy * dy + dz * dz, moving = square * square * inverse_sqrt(square);
+    unroll<N>([&](std::size_t k) PALPATE_INLINE_LAMBDA {
       u[k] = V(terms.affine[0][k]) + vx * terms.affine[1][k] + vy * terms.affine[2][k] +
              vz * terms.affine[3][k] + moving * terms.moving[k];
     });
     const S* kernel = &kernels_[at];
     for (std::size_t j = 0; j < spline_.size(); ++j, kernel += partition_.list_length()) {
       const V here(kernel);
-      unrolled<N>([&](std::size_t k) PALPATE_INLINE_LAMBDA { u[k] = u[k] + here * terms.kernel[j][k]; });
+      unroll<N>([&](std::size_t k) PALPATE_INLINE_LAMBDA { u[k] = u[k] + here * terms.kernel[j][k]; });
     }
   }
 
-  static std::vector<Vec3<double>> positions(const FacePartition<S>& partition) {
+  static std::vector<Vec3<double>> sites_of(const FacePartition<S>& partition) {
     std::vector<Vec3<double>> sites;
     for (const ExtremalPoint<S>& point : partition.points())
       sites.push_back(point.position.template cast<double>());
@@ -183,6 +185,7 @@ class SmoothInterpolation {
   AlignedList<S> kernels_;                 // |v - e_j|^3, site by site
 };
 
-static_assert(Interpolation<SmoothInterpolation<float>> && Interpolation<SmoothInterpolation<double>>);
+static_assert(BlockInterpolation<SmoothInterpolation<float>> &&
+              BlockInterpolation<SmoothInterpolation<double>>);
 
 }  // namespace palpate

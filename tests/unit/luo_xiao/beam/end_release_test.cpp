@@ -146,17 +146,17 @@ TEST_CASE(
   const auto top = release_at(skeleton, Vec3<double>(0, 0.04, 0), F, D);
   CHECK((top[3] - D).norm() <= 1e-9 * D.norm());  // within min_length over release_blend
   for (const double angle : {0.0, 0.7, 1.9, 2.6}) {
-    double largest = 0;
+    double max_step = 0;
     auto before = release_at(skeleton, on_top(-0.002 * std::cos(angle), -0.002 * std::sin(angle)), F, D);
     for (int step = 1; step <= 4000; ++step) {
       const double s = -0.002 + step * 1e-6;  // through the pole in steps of a micrometre
       const auto now = release_at(skeleton, on_top(s * std::cos(angle), s * std::sin(angle)), F, D);
-      for (std::size_t i = 0; i < 6; ++i) largest = std::max(largest, (now[i] - before[i]).norm());
+      for (std::size_t i = 0; i < 6; ++i) max_step = std::max(max_step, (now[i] - before[i]).norm());
       before = now;
     }
     // Blend zone of 0.01 times 40 mm: |D - u| of about 3 mm over 0.4 mm is 7.5 um per um.
-    INFO("angle ", angle, " largest step ", largest);
-    CHECK(largest <= 1e-5);
+    INFO("angle ", angle, " max step ", max_step);
+    CHECK(max_step <= 1e-5);
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// (6)-(8) as printed: right in the plane, and where it has no answer.
+// (6)-(8) as printed: right in the plane, and where it has no solution.
 #include "unit/luo_xiao/beam/reference.hpp"
 
 #include <palpate/luo_xiao/beam/skeleton.hpp>
@@ -46,7 +46,7 @@ std::vector<Vec3<double>> ellipsoid() {
 
 TEST_CASE("in a plane of any attitude: forces are the 2 x 2 system's, ratios hold, the sum is F") {
   std::mt19937_64 random(seed);
-  int solved = 0, wrong_way = 0;
+  int solved = 0, wrong_direction = 0;
   for (int round = 0; round < 1000; ++round) {
     const Mat3<double> R = test::random_rotation(random);
     const auto flat = [&](double size) {
@@ -69,7 +69,7 @@ TEST_CASE("in a plane of any attitude: forces are the 2 x 2 system's, ratios hol
     for (const auto& e : points) a += parts(e).first, b += parts(e).second;
     const VecL n = R.col(2).cast<L>(), f = F.cast<L>();
     const L det = n.dot(a.cross(b)), cx = n.dot(f.cross(b)) / det, cy = n.dot(a.cross(f)) / det;
-    if (cx < 0 || cy < 0) ++wrong_way;
+    if (cx < 0 || cy < 0) ++wrong_direction;
     VecL sum = VecL::Zero();
     // The columns may be within 1e-6 of each other in direction: digits are lost by that sine.
     const L lost = a.norm() * b.norm() / std::fabs(det), tolerance = 1e-13L * lost * lost * f.norm();
@@ -80,11 +80,12 @@ TEST_CASE("in a plane of any attitude: forces are the 2 x 2 system's, ratios hol
     }
     CHECK((sum - f).norm() <= tolerance);
   }
-  MESSAGE("planar skeletons solved: ", solved, " of 1000; a beam pushes the wrong way in ", wrong_way);
+  MESSAGE("planar skeletons solved: ", solved, " of 1000; a beam pushes in the wrong direction in ",
+          wrong_direction);
   CHECK(solved >= 990);
 }
 
-TEST_CASE("rank test: symmetric about the load there is no unique answer, and no force is given") {
+TEST_CASE("rank test: symmetric about the load the solution is not unique, and no force is given") {
   const Vec3<double> down(0, -1, 0);
   // The paper's own cases: the top of the cube's centre, the ellipsoid's pole; and a plane fan symmetric
   // about D.
@@ -102,7 +103,7 @@ TEST_CASE("rank test: symmetric about the load there is no unique answer, and no
   CHECK(good.shared);
 }
 
-TEST_CASE("in space the printed form has no answer: F is not in the plane of the two columns") {
+TEST_CASE("in space the printed form has no solution: F is not in the plane of the two columns") {
   std::mt19937_64 random(seed + 1);
   int solved = 0;
   for (int round = 0; round < 1000; ++round) {

@@ -105,7 +105,7 @@ void check_against_reference(std::size_t m) {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("one to four regions: forces and what is passed on are the reference's", S, float,
+TEST_CASE_TEMPLATE("one to four regions: forces and transmitted forces are the reference's", S, float,
                    double) {
   for (std::size_t m = 1; m <= 4; ++m) {
     check_against_reference<S, CoupledRegions>(m);
@@ -137,14 +137,14 @@ TEST_CASE("coupled: all load reaches the extremal points; one region is the skel
 TEST_CASE("coupled is reciprocal: d_j under a force at k is d_k under that force at j; superposed is not") {
   std::mt19937_64 random(seed + 11);
   double worst = 0;
-  std::vector<double> apart;  // superposed: how far the answers of 0 to 1 and of 1 to 0 differ
+  std::vector<double> errors;  // superposed: relative difference of the responses 0 to 1 and 1 to 0
   for (int round = 0; round < 200; ++round) {
     const auto points = random_points<double>(random, 8);
     auto contacts = random_contacts<double>(random, 2);
     const auto several = make<double>(points);
     const auto literal = make<double, SuperposedRegions>(points);
-    // Displacement of contact j under a unit force at contact k; superposed: under what k passes on to it.
-    const auto answer = [&](std::size_t j, std::size_t k, int c, bool coupled) -> Vec3<double> {
+    // Displacement of contact j under a unit force at contact k; superposed: under the force that k transmits to it.
+    const auto response = [&](std::size_t j, std::size_t k, int c, bool coupled) -> Vec3<double> {
       contacts[j].force.setZero();
       contacts[k].force = Vec3<double>::Unit(c);
       if (coupled) return share(several, contacts).loads[j].displacement;
@@ -153,19 +153,20 @@ TEST_CASE("coupled is reciprocal: d_j under a force at k is d_k under that force
     };
     for (const bool coupled : {true, false}) {
       Mat3<double> a, b;
-      for (int c = 0; c < 3; ++c) a.col(c) = answer(0, 1, c, coupled), b.col(c) = answer(1, 0, c, coupled);
+      for (int c = 0; c < 3; ++c)
+        a.col(c) = response(0, 1, c, coupled), b.col(c) = response(1, 0, c, coupled);
       const double error = (a - b.transpose()).norm() / a.norm();
       if (coupled)
         worst = std::max(worst, error);
       else
-        apart.push_back(error);
+        errors.push_back(error);
     }
   }
-  std::sort(apart.begin(), apart.end());
-  MESSAGE("reciprocity error: coupled at most ", worst, "; superposed median ", apart[100], ", most ",
-          apart[199]);
+  std::sort(errors.begin(), errors.end());
+  MESSAGE("reciprocity error: coupled at most ", worst, "; superposed median ", errors[100], ", max ",
+          errors[199]);
   CHECK(worst <= 1e-11);  // rounding times cond(K)
-  CHECK(apart[100] > 0.01);
+  CHECK(errors[100] > 0.01);
 }
 
 TEST_CASE("coupled: energy put in is what the contacts' displacements say, and is positive") {
@@ -207,21 +208,22 @@ TEST_CASE("a region that appears with zero force changes nothing, to the bit; th
       CHECK(before.loads[0].beams[i].force == alone.loads[0].beams[i].force);
       CHECK(before.loads[1].beams[i].force == Vec3<double>(Vec3<double>::Zero()));
     }
-    double largest = 0;
+    double max_step = 0;
     for (int step = 1; step <= 1000; ++step) {
       contacts[1].force = full * (step / 1000.0);
       contacts[1].normal_force = full_normal * (step / 1000.0);
       const auto now = share(several, contacts);
       for (std::size_t j = 0; j < 2; ++j) {
-        largest = std::max(largest, (now.from_others[j] - before.from_others[j]).norm());
+        max_step = std::max(max_step, (now.from_others[j] - before.from_others[j]).norm());
         for (std::size_t i = 0; i < 8; ++i) {
-          largest = std::max(largest, (now.loads[j].beams[i].force - before.loads[j].beams[i].force).norm());
+          max_step =
+              std::max(max_step, (now.loads[j].beams[i].force - before.loads[j].beams[i].force).norm());
         }
       }
       before = now;
     }
     // 1/1000 of the force and of a_jk (whose slope is N_1/N_0 <= 10) per step, times forces of a few newtons.
-    CHECK(largest <= 0.05);
+    CHECK(max_step <= 0.05);
   }
 }
 

@@ -43,14 +43,14 @@ struct Gauss {
 };
 
 struct Resultant {
-  L yx = 0, zx = 0, energy = 0, twist = 0;  // of tau_yx, tau_zx, tau^2, y tau_zx - z tau_yx
+  L yx = 0, zx = 0, energy = 0, torque = 0;  // of tau_yx, tau_zx, tau^2, y tau_zx - z tau_yx
   template <class C>
   void add(const C& section, double nu, L y, L z, L weight) {
     const auto t =
         section.flexure_shear(typename C::Scalar(nu), typename C::Scalar(y), typename C::Scalar(z));
     yx += weight * t.yx, zx += weight * t.zx;
     energy += weight * (static_cast<L>(t.yx) * t.yx + static_cast<L>(t.zx) * t.zx);
-    twist += weight * (y * t.zx - z * t.yx);
+    torque += weight * (y * t.zx - z * t.yx);
   }
 };
 
@@ -168,7 +168,7 @@ TEST_CASE("stresses are those of the bending function: circle, ellipse, rectangl
   }
 }
 
-TEST_CASE("sides are free of traction, the resultant is F, and there is no twist") {
+TEST_CASE("sides are free of traction, the resultant is F, and there is no torque") {
   for (const double nu : poisson) {
     for (const double b : {0.001, 0.004, 0.016}) {
       const double a = 0.004;
@@ -182,7 +182,7 @@ TEST_CASE("sides are free of traction, the resultant is F, and there is no twist
       const Resultant e = over_ellipse(ellipse, nu, a, b);
       CHECK_RELATIVE(e.yx, 1, 1e-14);
       CHECK_ABSOLUTE(e.zx, 0, 1e-14);
-      CHECK_ABSOLUTE(e.twist, 0, 1e-16);
+      CHECK_ABSOLUTE(e.torque, 0, 1e-16);
       CHECK_RELATIVE(1 / ellipse.shear_coefficient(nu), e.energy * ellipse.area(), 1e-14);
 
       const RectangularSection<double> box({.half_y = a, .half_z = b});
@@ -195,7 +195,7 @@ TEST_CASE("sides are free of traction, the resultant is F, and there is no twist
       const Resultant r = over_rectangle(box, nu, a, b);
       CHECK_RELATIVE(r.yx, 1, 1e-12);  // series' own 1e-16, and the quadrature near the corner
       CHECK_ABSOLUTE(r.zx, 0, 1e-12);
-      CHECK_ABSOLUTE(r.twist, 0, 1e-14);
+      CHECK_ABSOLUTE(r.torque, 0, 1e-14);
       CHECK_RELATIVE(1 / box.shear_coefficient(nu), r.energy * box.area(),
                      1e-6);  // corner's logarithm limits the quadrature
     }

@@ -189,14 +189,14 @@ TEST_CASE("condition: eigenvalues of K stay within (4/3)(l/r)^2") {
     const double r = skeleton.section(load).radius();
     for (const auto& beam : load.beams)
       bound = std::max(bound, 4.0 / 3 * (beam.length / r) * (beam.length / r));
-    // The compliance's largest and smallest response over many directions bracket its condition from below.
-    double most = 0, least = std::numeric_limits<double>::infinity();
+    // The compliance's maximum and minimum over many directions bound its condition from below.
+    double max_d = 0, min_d = std::numeric_limits<double>::infinity();
     for (int k = 0; k < 100; ++k) {
       const Vec3<double> F = test::random_vector<double>(random, 1).normalized();
       const double d = share(skeleton, position, F).displacement.norm();
-      most = std::max(most, d), least = std::min(least, d);
+      max_d = std::max(max_d, d), min_d = std::min(min_d, d);
     }
-    CHECK(most / least <= bound * (1 + 1e-9));
+    CHECK(max_d / min_d <= bound * (1 + 1e-9));
   }
 }
 
@@ -298,12 +298,12 @@ TEST_CASE("set-up reports; volume is preserved; a tick uses no heap and repeats 
   skeleton.share(contact, load);
   skeleton.share(contact, again);
   CHECK(heap.allocations() == 0);
-  double held = 0;
+  double beam_volume = 0;
   for (std::size_t i = 0; i < 12; ++i) {
-    held += skeleton.section(load).area() * load.beams[i].length;
+    beam_volume += skeleton.section(load).area() * load.beams[i].length;
     CHECK(load.beams[i].force == again.beams[i].force);
   }
-  CHECK_RELATIVE(held, volume, 1e-14);
+  CHECK_RELATIVE(beam_volume, volume, 1e-14);
 }
 
 TEST_CASE(

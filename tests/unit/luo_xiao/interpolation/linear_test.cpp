@@ -85,7 +85,7 @@ TEST_CASE("the field stays within the range of its corners, wherever the contact
   }
 }
 
-TEST_CASE("a face whose corners stand still and that no contact splits does not move") {
+TEST_CASE("a face whose corners do not move and that no contact splits does not move") {
   const Box<double> box(Box<double>::Params{});
   const LinearInterpolation<double> linear(make_partition(box, box.mesh(100)));
   std::vector<Vec3<double>> corners(8, Vec3<double>::Zero());

@@ -25,17 +25,13 @@ std::vector<std::vector<S>> all_weights(const FacePartition<S>& part, const Poin
   for (std::size_t f = 0; f < part.faces().size(); ++f) {
     const Face<S>& face = part.faces()[f];
     detail::with_weights(part, at, f, 0, [&](const auto& weights) {
-      using Group = detail::LaneGroup<S>;
-      for (std::size_t i = 0; i < face.count; i += Group::lanes) {
-        const auto w = weights.at(i);
-        const auto keep = [&](const Group& group, std::size_t column) {
-          std::array<S, Group::lanes> entry;
-          group.store(entry.data());
-          for (std::size_t j = 0; j < Group::lanes && i + j < face.count; ++j)
-            result[face.first + i + j][column] = entry[j];
-        };
-        for (std::size_t k = 0; k < face.corners; ++k) keep(w.corner(k), face.corner[k]);
-        keep(w.contact(), part.points().size());
+      using V = detail::simd_group<S>;
+      for (std::size_t i = 0; i < face.count; i += V::size()) {
+        weights.at(i).each_term([&](std::size_t k, const V& weight) {
+          const std::size_t column = k < face.corners ? face.corner[k] : part.points().size();
+          for (std::size_t j = 0; j < V::size() && i + j < face.count; ++j)
+            result[face.first + i + j][column] = weight[j];
+        });
       }
     });
   }
@@ -162,7 +158,7 @@ TEST_CASE(
       CHECK(weights[slot].back() == 0.0);
       continue;
     }
-    // The sub-triangle that holds the vertex is the one with no negative coordinate.
+    // The sub-triangle that contains the vertex is the one with no negative coordinate.
     const Vec3<double>& v = mesh.vertices[part.order()[slot]];
     for (std::size_t k = 0; k < 3; ++k) {
       const auto exact = reference(v, flat_p, corner[k], corner[(k + 1) % 3]);
@@ -234,7 +230,7 @@ TEST_CASE("a mesh sorted by face: the same triangles in space, and slots in the 
   }
 }
 
-TEST_CASE("positions that make no sense are not located") {
+TEST_CASE("positions that are not finite are not located") {
   const auto part = make_partition(ellipsoid, ellipsoid.mesh(100));
   const double nan = std::numeric_limits<double>::quiet_NaN(),
                infinity = std::numeric_limits<double>::infinity();

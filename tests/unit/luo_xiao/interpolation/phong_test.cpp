@@ -63,7 +63,7 @@ TEST_CASE("along an edge: magnitude and angle to the normal are linear, the azim
   }
 }
 
-TEST_CASE("a corner that stands still lends no direction: only the magnitude fades towards it") {
+TEST_CASE("a corner of zero displacement gives no direction: only the magnitude falls towards it") {
   const Edge edge;
   const Vec3<double> u1(-1e-3, 0, 0);  // straight in
   for (int i = 0; i < Edge::steps; ++i) {
@@ -73,13 +73,14 @@ TEST_CASE("a corner that stands still lends no direction: only the magnitude fad
   }
 }
 
-TEST_CASE("a corner's direction enters without a jump as it begins to move") {
+TEST_CASE("a corner's direction enters without a jump as its displacement becomes nonzero") {
   const Edge edge;
   const Vec3<double> u1(-1e-3, 0, 0);
   const Vec3<double> still = edge.at(edge.phong, u1, Vec3<double>::Zero(), 10);
   for (const double size : {1e-7, 1e-9, 1e-12, 1e-300, 1e-310}) {
     const Vec3<double> u = edge.at(edge.phong, u1, Vec3<double>(0, 0, size), 10);
-    CHECK((u - still).norm() <= 100 * size + 1e-18);  // g has the slope 16 / largest, an angle the slope pi/2
+    CHECK((u - still).norm() <=
+          100 * size + 1e-18);  // g has the slope 16 / max_size, an angle the slope pi/2
   }
 }
 
@@ -92,14 +93,14 @@ TEST_CASE("opposite directions: the linear interpolation in the middle, no jump 
   // Along z and against it.
   const Vec3<double> there(0, 0, size), back(0, 0, -size);
   CHECK((edge.at(edge.phong, there, back, 10) - edge.at(edge.linear, there, back, 10)).norm() <= 1e-17);
-  for (const double tilt : {1e-6, 1e-9}) {
-    const Vec3<double> nearly(0, size * tilt, -size);
+  for (const double ratio : {1e-6, 1e-9}) {
+    const Vec3<double> nearly(0, size * ratio, -size);
     CHECK((edge.at(edge.phong, there, nearly, 10) - edge.at(edge.phong, there, back, 10)).norm() <=
-          10 * size * tilt + 1e-18);
+          10 * size * ratio + 1e-18);
   }
 }
 
-TEST_CASE("no vertex moves further than the largest corner") {
+TEST_CASE("no displacement exceeds the maximum of the corners") {
   const PhongInterpolation<double> phong(make_partition(body, body.mesh(300)));
   std::mt19937_64 random(11);
   INFO("seed 11");
@@ -107,15 +108,15 @@ TEST_CASE("no vertex moves further than the largest corner") {
   const auto vector = [&] { return Vec3<double>(unit(random), unit(random), unit(random)); };
   for (int trial = 0; trial < 200; ++trial) {
     std::vector<Vec3<double>> corners(6);
-    double largest = 0;
-    for (auto& u : corners) u = vector(), largest = std::max(largest, u.norm());
+    double max_size = 0;
+    for (auto& u : corners) u = vector(), max_size = std::max(max_size, u.norm());
     ContactDisplacement<double> contact;
     contact.position = vector(), contact.displacement = vector(),
     contact.normal = body.closest(contact.position).normal;
-    largest = std::max(largest, contact.displacement.norm());
-    double most = 0;
-    for (const Vec3<double>& u : field_of(phong, corners, contact)) most = std::max(most, u.norm());
-    CHECK(most <= largest * (1 + 1e-14));
+    max_size = std::max(max_size, contact.displacement.norm());
+    double max_field = 0;
+    for (const Vec3<double>& u : field_of(phong, corners, contact)) max_field = std::max(max_field, u.norm());
+    CHECK(max_field <= max_size * (1 + 1e-14));
   }
 }
 
@@ -130,13 +131,13 @@ TEST_CASE("where all corners move alike along their normals, Phong inflates and 
   contact.position = 0.03 * Vec3<double>(1, 1, 1).normalized();
   contact.normal = contact.position.normalized(), contact.displacement = 1e-3 * contact.normal;
   const auto round = field_of(phong, corners, contact), flat = field_of(linear, corners, contact);
-  double least = 1;
+  double min_field = 1;
   for (const Face<double>& face : part.faces()) {
     for (std::size_t j = 0; j < face.count; ++j) {
       const Vec3<double> n(part.normal(face, 0)[j], part.normal(face, 1)[j], part.normal(face, 2)[j]);
       CHECK((round[face.first + j] - 1e-3 * n).norm() <= 1e-17);  // exactly a larger sphere
-      least = std::min(least, flat[face.first + j].norm());
+      min_field = std::min(min_field, flat[face.first + j].norm());
     }
   }
-  CHECK(least < 0.9e-3);
+  CHECK(min_field < 0.9e-3);
 }

@@ -38,7 +38,7 @@ TEST_CASE_TEMPLATE("affine displacements are exact on the curved surface itself,
     const auto field = field_of(smooth, corners, contact);
     for (std::size_t slot = 0; slot < field.size(); ++slot) {
       const Vec3<S> exact = A * mesh.vertices[smooth.partition().order()[slot]];
-      // Near a site the contact's own function is divided by its small peak; 200 ulp of the largest, 0.01.
+      // Near a site the contact's own function is divided by its small peak; 200 ulp of the maximum, 0.01.
       CHECK((field[slot] - exact).norm() <= S(ulps<S>(200)) * S(0.01));
     }
   }

@@ -10,11 +10,12 @@
 
 namespace palpate {
 
-/// Vertices are worked on in blocks of at most this many, whose intermediate results stay in the first-level
-/// cache.
+/// Vertices are worked on in blocks of at most this many: a dozen intermediate results of a block in double
+/// fit in a first-level cache of 32 kB.
 inline constexpr std::size_t block_size = 256;
 
-/// One number per vertex of a block. What follows the block's last vertex in its LaneGroup is never used.
+/// One number per vertex of a block. Entries after the last vertex fill up its `simd_group`; they are not
+/// used.
 template <Real S>
 struct alignas(64) Block {
   S value[block_size];
@@ -22,7 +23,7 @@ struct alignas(64) Block {
   [[nodiscard]] const S& operator[](std::size_t i) const noexcept { return value[i]; }
 };
 
-/// Where the vertices of a block are, coordinate by coordinate.
+/// Vectors of the vertices of a block (positions, displacements), coordinate by coordinate.
 template <class S>
 using Lists = std::array<S*, 3>;
 

@@ -1,67 +1,60 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Weights of a face's vertices, split by a contact, a group of registers at a time.
+/// @file  Weights of a face's vertices, split by a contact, in vector registers.
 
-#include <palpate/core/lane_group.hpp>
+#include <palpate/core/simd.hpp>
 #include <palpate/luo_xiao/interpolation/partition.hpp>
 
 #include <array>
 #include <cstddef>
 #include <limits>
 #include <type_traits>
+#include <utility>
 
 namespace palpate::detail {
+
+/// work(0) .. work(N - 1), written out: compilers keep short loops at -O2, and their arrays in memory.
+template <std::size_t N, class Work>
+PALPATE_INLINE void unroll(const Work& work) noexcept {
+  [&]<std::size_t... i>(std::index_sequence<i...>)
+      PALPATE_INLINE_LAMBDA { (work(i), ...); }(std::make_index_sequence<N>{});
+}
 
 /// Terms to interpolate: of each corner of a face, and of the contact.
 template <Real S, std::size_t Terms>
 struct FaceTerms {
-  using Row = std::array<LaneFactor<S>, Terms>;
+  using Row = std::array<simd_factor<S>, Terms>;
   std::array<Row, max_face_corners> corner;
   Row contact;
 
   static PALPATE_INLINE Row row(const S* from) noexcept {
     Row row;
-    for (std::size_t term = 0; term < Terms; ++term) row[term] = lane_factor(from[term]);
+    for (std::size_t term = 0; term < Terms; ++term) row[term] = simd_factor<S>(from[term]);
     return row;
   }
 };
 
-/// FaceSplit, for registers.
-template <Real S>
-struct LaneSplit {
-  using Row = std::array<LaneFactor<S>, max_face_corners>;
-  std::size_t corners;
-  LaneFactor<S> share;
-  Row P, per_P, lift;
-
-  PALPATE_INLINE explicit LaneSplit(const FaceSplit<S>& split) noexcept
-      : corners(split.corners), share(lane_factor(split.share)) {
-    for (std::size_t k = 0; k < corners; ++k)
-      P[k] = lane_factor(split.P[k]), per_P[k] = lane_factor(split.per_P[k]),
-      lift[k] = lane_factor(split.lift[k]);
-  }
-};
-
-/// Of a group of vertices: weights at N corners (0: known at run time only), and of the contact where it
+/// Weights of a group of vertices: at N corners (0: known at run time only), and of the contact where it
 /// splits the face.
 template <Real S, std::size_t N, bool Split>
-class LaneWeights {
+class GroupWeights {
  public:
-  using V = LaneGroup<S>;
+  using V = simd_group<S>;
 
   /// Weights L begin at `weight`, those of the next corner `stride` further. FacePartition has the formulas.
-  PALPATE_INLINE LaneWeights(const S* weight, std::size_t stride, const LaneSplit<S>& split) noexcept
+  PALPATE_INLINE GroupWeights(const S* weight, std::size_t stride,
+                              const FaceSplit<simd_factor<S>>& split) noexcept
       : corners_(split.corners) {
     each_corner([&](std::size_t k) PALPATE_INLINE_LAMBDA { corner_[k] = V(weight + k * stride); });
     if constexpr (Split) {
       contact_ = V(split.share);
       each_corner([&](std::size_t k) PALPATE_INLINE_LAMBDA {
-        contact_ = smaller(corner_[k] * split.per_P[k] + split.lift[k], contact_);
+        contact_ = (min)(corner_[k] * split.per_P[k] + split.lift[k], contact_);
       });
       V sum = V((std::numeric_limits<S>::min)());  // never divides by zero
       each_corner([&](std::size_t k) PALPATE_INLINE_LAMBDA {
-        corner_[k] = larger(corner_[k] - contact_ * split.P[k], V{});
+        corner_[k] = (max)(corner_[k] - contact_ * split.P[k], V{});
         sum = sum + corner_[k];
       });
       const V scale = (S(1) - contact_) / sum;
@@ -71,7 +64,12 @@ class LaneWeights {
 
   /// mu; 0 where the face is not split.
   [[nodiscard]] PALPATE_INLINE const V& contact() const noexcept { return contact_; }
-  [[nodiscard]] PALPATE_INLINE const V& corner(std::size_t k) const noexcept { return corner_[k]; }
+  /// work(k, weight) of every corner, and of the contact as the last one where it splits the face.
+  template <class Work>
+  PALPATE_INLINE void each_term(const Work& work) const noexcept {
+    each_corner([&](std::size_t k) PALPATE_INLINE_LAMBDA { work(k, corner_[k]); });
+    if constexpr (Split) work(N == 0 ? corners_ : N, contact_);
+  }
   /// sum_k w_k corner_k + contact_weight contact, of term number `term`.
   template <std::size_t Terms>
   [[nodiscard]] PALPATE_INLINE V sum(const FaceTerms<S, Terms>& of, std::size_t term,
@@ -95,7 +93,7 @@ class LaneWeights {
     if constexpr (N == 0)
       for (std::size_t k = 0; k < corners_; ++k) work(k);
     else
-      unrolled<N>(work);
+      unroll<N>(work);
   }
 
   std::size_t corners_;
@@ -103,21 +101,37 @@ class LaneWeights {
   V contact_{};
 };
 
-/// The same of all vertices of a face from some slot on.
+/// The weights of all vertices of a face from some slot on.
 template <Real S, std::size_t N, bool Split>
 class FaceWeights {
  public:
   PALPATE_INLINE FaceWeights(const S* weight, std::size_t stride, const FaceSplit<S>& split) noexcept
-      : weight_(weight), stride_(stride), split_(split) {}
+      : weight_(weight), stride_(stride), split_(factors(split)) {}
+  /// How many terms have a weight: corners, and the contact where it splits the face.
+  [[nodiscard]] PALPATE_INLINE std::size_t terms() const noexcept {
+    return (N == 0 ? split_.corners : N) + (Split ? 1 : 0);
+  }
   /// Of the group that begins i slots on.
-  [[nodiscard]] PALPATE_INLINE LaneWeights<S, N, Split> at(std::size_t i) const noexcept {
+  [[nodiscard]] PALPATE_INLINE GroupWeights<S, N, Split> at(std::size_t i) const noexcept {
     return {weight_ + i, stride_, split_};
   }
 
  private:
+  static PALPATE_INLINE FaceSplit<simd_factor<S>> factors(const FaceSplit<S>& split) noexcept {
+    FaceSplit<simd_factor<S>> to;
+    to.corners = split.corners;
+    to.share = simd_factor<S>(split.share);
+    for (std::size_t k = 0; k < split.corners; ++k) {
+      to.P[k] = simd_factor<S>(split.P[k]);
+      to.per_P[k] = simd_factor<S>(split.per_P[k]);
+      to.lift[k] = simd_factor<S>(split.lift[k]);
+    }
+    return to;
+  }
+
   const S* weight_;
   std::size_t stride_;
-  LaneSplit<S> split_;
+  FaceSplit<simd_factor<S>> split_;
 };
 
 /// work(FaceWeights) with the weights from slot number `from` of the face on: one type for triangles, one for

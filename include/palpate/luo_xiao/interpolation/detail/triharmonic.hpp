@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  The smoothest function through values at a few sites, one of which may move.
+/// @file  Triharmonic spline through values at a few sites, one of which may move.
 
 #include <palpate/core/error.hpp>
 #include <palpate/core/vector.hpp>
@@ -17,20 +17,21 @@
 
 namespace palpate {
 
-/// Triharmonic spline in space: of all functions through the values, the one of least bending energy of third
-/// order (the integral of the squared third derivatives). No equation: V.A.2 asks for least elastic energy
-/// and leaves open how.
+/// Triharmonic spline in space: of all functions through the values, the one of minimum bending energy of
+/// third order (the integral of the squared third derivatives). No equation: V.A.2 asks for minimum elastic
+/// energy and leaves open how.
 ///
 ///     f(x) = sum_j c_j |x - e_j|^3 + b + A x,   sum_j c_j = 0,  sum_j c_j e_j = 0
 ///
-/// Coordinates are centred on the sites and divided by their largest distance; the solve is in double. Rank
-/// test: sites in one plane (line, point) to 1e-6 of their extent cannot fix A across it; then x is projected
+/// Coordinates are centred on the sites and divided by their max distance; the solve is in double. Rank test:
+/// sites in one plane (line, point) to 1e-6 of their extent cannot determine A across it. Then x is projected
 /// on that plane first, so f does not vary across it. Affine functions are reproduced exactly (within the
 /// plane). Values between the sites may overshoot.
 ///
-/// A further, moving site p gets the function `moving()` that is 0 at the sites and 1 at p. Close to a site
-/// (nearer than a quarter of that site's distance to its nearest fellow) it fades into that site's own
-/// function, because with two sites at one position there is no answer; it is 1 at p all the way.
+/// A further, moving site p gets the function `moving()` that is 0 at the sites and 1 at p. Nearer to a site
+/// than a quarter of that site's distance to the next one, it fades into that site's own function, because
+/// two sites at one position have no solution; it is 1 at p throughout. The quarter is chosen: the fades of
+/// two sites do not meet.
 ///
 /// | symbol | name    | unit | range                                       |
 /// |--------|---------|------|---------------------------------------------|
@@ -114,10 +115,11 @@ class TriharmonicSpline {
     }
     const double q = (p - sites_[nearest]).squaredNorm() / (gap_[nearest] * gap_[nearest]);
     const double own = q < 1 ? q * (2 - q) : 1;         // 1 - fade, without cancellation
-    const double scale = own / (std::max)(peak, 1e-9);  // peak ~ q near a site
+    const double scale = own / (std::max)(peak, 1e-9);  // peak ~ q near a site; at it 0 / 1e-9 = 0
     f.moving = scale;
     for (std::size_t j = 0; j < count_; ++j) f.kernel[j] -= scale * cardinal[j];
     for (std::size_t j = 0; j < count_; ++j) add_cardinal(j, -scale * residual[j], f);
+    // So near to the site its cardinal function is close to 1; 0.25 keeps the quotient bounded.
     if (own < 1) add_cardinal(nearest, (1 - own) / (std::max)(cardinal[nearest], 0.25), f);
   }
 
@@ -138,18 +140,18 @@ class TriharmonicSpline {
     for (std::size_t a = 0; a < 4; ++a) f.affine[a] += factor * term(count_ + a, site);
   }
 
-  // Rank of the sites' spread by Gram-Schmidt, furthest first; sets `axes_` to its directions and `onto_` to
-  // the projection on them.
+  // Rank of the sites' spread by Gram-Schmidt, the most distant site first; sets `axes_` to its directions
+  // and `onto_` to the projection on them.
   int find_plane(std::span<const Vec3<double>> sites) {
     std::vector<Vec3<double>> left;
     for (const Vec3<double>& e : sites) left.push_back((e - centre_) / extent_);
     int rank = 0;
     while (rank < 3) {
-      const auto furthest = std::max_element(
+      const auto most_distant = std::max_element(
           left.begin(), left.end(),
           [](const Vec3<double>& a, const Vec3<double>& b) { return a.squaredNorm() < b.squaredNorm(); });
-      if (!(furthest->norm() > 1e-6)) break;
-      const Vec3<double> axis = furthest->normalized();
+      if (!(most_distant->norm() > 1e-6)) break;
+      const Vec3<double> axis = most_distant->normalized();
       axes_.row(rank++) = axis.transpose();
       for (Vec3<double>& r : left) r -= axis * axis.dot(r);
     }
@@ -169,7 +171,7 @@ class TriharmonicSpline {
         if (j != i) nearest = (std::min)(nearest, (sites_[i] - sites_[j]).norm());
       }
       if (!(nearest > 1e-6)) fail_at(name, "must be distinct", "site", i);
-      gap_.push_back(count_ > 1 ? nearest / 4 : 0.25);
+      gap_.push_back(count_ > 1 ? nearest / 4 : 0.25);  // a single site: a quarter of the unit of length
     }
   }
 
@@ -191,6 +193,7 @@ class TriharmonicSpline {
       for (std::size_t i = k + 1; i < size; ++i) {
         if (std::abs(at(i, k)) > std::abs(at(pivot, k))) pivot = i;
       }
+      // Entries are at most 8; rounding leaves less than this of a pivot that is zero.
       if (!(std::abs(at(pivot, k)) > 1e-14)) fail(name, "sites give a singular system");
       if (pivot != k) {
         for (std::size_t j = 0; j < width; ++j) std::swap(at(k, j), at(pivot, j));
