@@ -55,7 +55,7 @@ double row(const Output& out, const char* depth, const char* search, const Objec
     auto start = Clock::now();
     for_each_candidate_leaf(
         tool, X, solver.object(),
-        [&](std::uint32_t, std::uint32_t points, const PointLanes<S>&) noexcept { candidates += points; });
+        [&](std::uint32_t, std::uint32_t points, const PointBatch<S>&) noexcept { candidates += points; });
     searches.push_back(since(start));
     const test::HeapCount heap;
     start = Clock::now();

@@ -308,13 +308,13 @@ void closest_point(const Table& table, const char* problem, double least, double
         },
         16 * epsilon);
     const double ns = least_ns(table.repeats, [&] {
-      PointLanes<S> at;
-      PenetrationLanes<S> in;
-      for (std::size_t i = 0; i < count; i += lane_count) {
-        for (std::size_t l = 0; l < lane_count; ++l)
+      PointBatch<S> at;
+      PenetrationBatch<S> in;
+      for (std::size_t i = 0; i < count; i += batch_size) {
+        for (std::size_t l = 0; l < batch_size; ++l)
           at.x[l] = x[i + l].x(), at.y[l] = x[i + l].y(), at.z[l] = x[i + l].z();
         surface.penetration(at, in);
-        for (std::size_t l = 0; l < lane_count; ++l)
+        for (std::size_t l = 0; l < batch_size; ++l)
           p[i + l] = x[i + l] + in.depth[l] * Vec3<S>(in.gradient_x[l], in.gradient_y[l], in.gradient_z[l]);
       }
       use(p[0]);

@@ -64,7 +64,7 @@ class CandidateTreeSuite {
     B body;
     SurfacePoint<S> closest(const V& x) const noexcept { return body.closest(x); }
     Penetration<S> penetration(const V& x) const noexcept { return body.penetration(x); }
-    void penetration(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
+    void penetration(const PointBatch<S>& x, PenetrationBatch<S>& in) const noexcept {
       body.penetration(x, in);
     }
     S reach() const noexcept { return body.reach(); }
@@ -150,7 +150,7 @@ class CandidateTreeSuite {
     Host host(mesh.data());
     // Twice: between vertices the middle of a triangle need not be the farthest place.
     const CandidatesFrom theirs(egg, host.tree(), 2 * chord);
-    static_assert(HasPenetrationLanes<Ellipsoid<S>> && HasPenetrationLanes<decltype(theirs)>);
+    static_assert(HasPenetrationBatch<Ellipsoid<S>> && HasPenetrationBatch<decltype(theirs)>);
     require_equal(compare(egg, theirs, ball(mesh), mesh, 120));
   }
 

@@ -43,8 +43,8 @@ class SurfaceSuite {
     INFO("seed ", surface_seed, ", half sizes ", half_.x(), " ", half_.y(), " ", half_.z());
     closest();
     penetration();
-    if constexpr (HasPenetrationLanes<Body>) penetration_lanes<lane_count>();
-    if constexpr (HasPenetrationLanes<Body, 2 * lane_count>) penetration_lanes<2 * lane_count>();
+    if constexpr (HasPenetrationBatch<Body>) penetration_batch<batch_size>();
+    if constexpr (HasPenetrationBatch<Body, 2 * batch_size>) penetration_batch<2 * batch_size>();
     continuity();
     separated();
     raycast();
@@ -146,17 +146,17 @@ class SurfaceSuite {
   // included. Many at once as one by one: in one face's or several faces' depth, at the centre, outside, far
   // away, and not finite.
   template <std::size_t N>
-  void penetration_lanes() {
+  void penetration_batch() {
     for (int k = 0; k < 300; ++k) {
-      PointLanes<S, N> x;
+      PointBatch<S, N> x;
       for (std::size_t i = 0; i < N; ++i) {
         Vec3<S> p = k % 3 == 0 ? within(S(1.2)) : below(k % 3 == 1 ? S(1e-3) * size_ : size_ / S(4));
-        if (i % lane_count == 3 && k % 10 == 0) p = centre_;
+        if (i % batch_size == 3 && k % 10 == 0) p = centre_;
         if (i == 5 && k % 20 == 0) p = S(1e5) * size_ * Vec3<S>::Ones();
         if (i == 7 && k % 30 == 0) p.x() = std::numeric_limits<S>::quiet_NaN();
         x.x[i] = p.x(), x.y[i] = p.y(), x.z[i] = p.z();
       }
-      PenetrationLanes<S, N> in;
+      PenetrationBatch<S, N> in;
       body_.penetration(x, in);
       for (std::size_t i = 0; i < N; ++i) {
         const Penetration<S> one = body_.penetration(Vec3<S>(x.x[i], x.y[i], x.z[i]));

@@ -17,13 +17,13 @@ namespace palpate {
 namespace detail {
 /// As many registers at once as suit a formula over the points of a leaf.
 template <Real S>
-using leaf_simd = Simd<S, (simd_group<S>::size() < lane_count ? static_cast<int>(simd_group<S>::size())
-                                                              : static_cast<int>(lane_count))>;
+using leaf_simd = Simd<S, (simd_group<S>::size() < batch_size ? static_cast<int>(simd_group<S>::size())
+                                                              : static_cast<int>(batch_size))>;
 
 /// The largest of a leaf's numbers.
 template <Real S>
-[[nodiscard]] PALPATE_INLINE S max_of(const std::array<S, lane_count>& list) noexcept {
-  return reduce_max(Simd<S, static_cast<int>(lane_count)>(list.data()));
+[[nodiscard]] PALPATE_INLINE S max_of(const std::array<S, batch_size>& list) noexcept {
+  return reduce_max(Simd<S, static_cast<int>(batch_size)>(list.data()));
 }
 }  // namespace detail
 
@@ -134,22 +134,22 @@ class PointForce {
   S normal_force_ = S(0);
 };
 
-/// A RegionSum in the making, a leaf of `lane_count` points at a time. Entry i of every list sums point i of
+/// A RegionSum in the making, a leaf of `batch_size` points at a time. Entry i of every list sums point i of
 /// all leaves; total() adds the entries up.
 template <Real S>
 class alignas(64) LeafSum {
  public:
-  using List = std::array<S, lane_count>;
+  using List = std::array<S, batch_size>;
 
   /// About this centre of mass [m].
   explicit LeafSum(const Vec3<S>& centre_of_mass) noexcept : centre_(centre_of_mass) {}
 
   /// Adds points at x with forces f [N] along their exit directions; f is 0 and the depth <= 0 for those that
   /// do not belong. `per_area`: 1/A_i [1/m^2].
-  void add(const PointLanes<S>& x, const PenetrationLanes<S>& in, const List& f,
+  void add(const PointBatch<S>& x, const PenetrationBatch<S>& in, const List& f,
            const List& per_area) noexcept {
     if (empty_) clear();
-    for (std::size_t i = 0; i < lane_count; i += V::size()) add_part(i, x, in, f, per_area);
+    for (std::size_t i = 0; i < batch_size; i += V::size()) add_part(i, x, in, f, per_area);
     for (const S depth : in.depth) sum_.points += depth > S(0) ? 1u : 0u;
     if (!(detail::max_of(in.depth) > sum_.deepest)) return;
     for (std::size_t i = 0; i < in.depth.size(); ++i) {
@@ -192,7 +192,7 @@ class alignas(64) LeafSum {
   }
 
   /// The points from i on, as many as V holds.
-  PALPATE_INLINE void add_part(std::size_t i, const PointLanes<S>& x, const PenetrationLanes<S>& in,
+  PALPATE_INLINE void add_part(std::size_t i, const PointBatch<S>& x, const PenetrationBatch<S>& in,
                                const List& forces, const List& per_area) noexcept {
     using Vector = detail::SimdVec3<V>;
     const Vector p{V(&x.x[i]), V(&x.y[i]), V(&x.z[i])};
@@ -207,7 +207,7 @@ class alignas(64) LeafSum {
   }
 
   [[nodiscard]] static S total(const List& list) noexcept {
-    return detail::reduce(detail::Simd<S, static_cast<int>(lane_count)>(list.data()));
+    return detail::reduce(detail::Simd<S, static_cast<int>(batch_size)>(list.data()));
   }
   [[nodiscard]] static Vec3<S> total(const List3& list) noexcept {
     return {total(list.x), total(list.y), total(list.z)};

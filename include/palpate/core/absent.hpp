@@ -19,8 +19,8 @@ template <int Role>
 struct Absent {};
 
 namespace detail {
-/// The policy where it is active, else a stand-in that satisfies everything. Concepts check this one: an alternative
-/// (`||`) would do, but compilers do not say which member of an alternative is missing.
+/// The policy where it is active, else a stand-in that satisfies everything. Concepts check this one: an
+/// alternative (`||`) would do, but compilers do not say which member of an alternative is missing.
 template <class P, class StandIn>
 struct ActiveOr {
   using type = StandIn;

@@ -316,6 +316,14 @@ template <SimdOrReal V>
   else
     return x.map([](const auto& r) PALPATE_INLINE_LAMBDA { return register_abs(r); });
 }
+/// The whole number at or below x; of |x| < 2^22 (float) or 2^51.
+template <SimdOrReal V>
+[[nodiscard]] PALPATE_INLINE V floor(const V& x) noexcept {
+  if constexpr (Real<V>)
+    return std::floor(x);
+  else
+    return x.map([](const auto& r) PALPATE_INLINE_LAMBDA { return register_floor(r); });
+}
 template <Real T>
 [[nodiscard]] PALPATE_INLINE T select(bool condition, T a, T b) noexcept {
   return condition ? a : b;

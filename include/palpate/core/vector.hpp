@@ -47,8 +47,9 @@ template <Real S>
 }
 }  // namespace detail
 
-/// |v| to 2 epsilon wherever it can be represented; not finite where v is not. The same bits for the same v: Eigen's stableNorm begins
-/// with what lies on an aligned address, so that its last digit depends on where v lies.
+/// |v| to 2 epsilon wherever it can be represented; not finite where v is not. The same bits for the same v:
+/// Eigen's stableNorm begins with what lies on an aligned address, so that its last digit depends on where v
+/// lies.
 template <Real S>
 [[nodiscard]] inline S stable_norm(const Vec3<S>& v) noexcept {
   const S square = v.squaredNorm();

@@ -21,12 +21,12 @@ template <Real S>
 
 /// X times each point.
 template <Real S>
-[[nodiscard]] inline PointLanes<S> transformed(const Pose<S>& X, const PointLanes<S>& p) noexcept {
-  using V = simd_at_most<S, static_cast<int>(lane_count)>;
+[[nodiscard]] inline PointBatch<S> transformed(const Pose<S>& X, const PointBatch<S>& p) noexcept {
+  using V = simd_at_most<S, static_cast<int>(batch_size)>;
   const auto& R = X.rotation;
   const auto& t = X.translation;
-  PointLanes<S> x;
-  for (std::size_t i = 0; i < lane_count; i += V::size()) {
+  PointBatch<S> x;
+  for (std::size_t i = 0; i < batch_size; i += V::size()) {
     const V px(&p.x[i]), py(&p.y[i]), pz(&p.z[i]);
     (R(0, 0) * px + R(0, 1) * py + R(0, 2) * pz + t.x()).copy_to(&x.x[i]);
     (R(1, 0) * px + R(1, 1) * py + R(1, 2) * pz + t.y()).copy_to(&x.y[i]);
@@ -37,7 +37,7 @@ template <Real S>
 }  // namespace detail
 
 /// Calls visit(begin, count, x) for every leaf of the tool's tree with a point that may be inside the
-/// surface: `count` <= lane_count points from `begin` on, with x their positions in object coordinates [m].
+/// surface: `count` <= batch_size points from `begin` on, with x their positions in object coordinates [m].
 /// No equation.
 ///
 /// Precondition: X is usable (core/pose.hpp). A ball that surface.separated() says is apart is left out with
@@ -72,7 +72,7 @@ template <Real S, ContactSurface B, class Visit>
 inline void for_each_candidate(const ToolPoints<S>& tool, const Pose<S>& X, const B& surface,
                                const Visit& visit) noexcept {
   for_each_candidate_leaf(tool, X, surface,
-                          [&](std::uint32_t begin, std::uint32_t count, const PointLanes<S>& x) noexcept {
+                          [&](std::uint32_t begin, std::uint32_t count, const PointBatch<S>& x) noexcept {
                             for (std::uint32_t i = 0; i < count; ++i)
                               visit(begin + i, Vec3<S>(x.x[i], x.y[i], x.z[i]));
                           });

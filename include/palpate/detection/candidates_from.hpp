@@ -63,8 +63,8 @@ class CandidatesFrom {
   [[nodiscard]] SurfacePoint<S> closest(const Vec3<S>& x) const noexcept { return body_.closest(x); }
   [[nodiscard]] Penetration<S> penetration(const Vec3<S>& x) const noexcept { return body_.penetration(x); }
   template <std::size_t N>
-    requires HasPenetrationLanes<B, N>
-  void penetration(const PointLanes<S, N>& x, PenetrationLanes<S, N>& in) const noexcept {
+    requires HasPenetrationBatch<B, N>
+  void penetration(const PointBatch<S, N>& x, PenetrationBatch<S, N>& in) const noexcept {
     body_.penetration(x, in);
   }
 

@@ -29,7 +29,7 @@ struct PointTool {
 /// force law.
 ///
 /// Points are sorted by position: `original(i)` is the number that point i had when it was given. The tree's
-/// nodes are in pre-order, a node's points are contiguous, leaves have at most `lane_count`; a walk needs no
+/// nodes are in pre-order, a node's points are contiguous, leaves have at most `batch_size`; a walk needs no
 /// stack (candidates.hpp). Constructors report what is out of range; `spacing` as resample().
 template <Real S>
 class ToolPoints {
@@ -84,7 +84,7 @@ class ToolPoints {
     lanes_.resize((points_.size() + leaf_size - 1) / leaf_size);
     for (std::size_t i = 0; i < lanes_.size() * leaf_size; ++i) {
       const Vec3<S>& p = points_[(std::min)(i, points_.size() - 1)];
-      PointLanes<S>& leaf = lanes_[i / leaf_size];
+      PointBatch<S>& leaf = lanes_[i / leaf_size];
       leaf.x[i % leaf_size] = p.x();
       leaf.y[i % leaf_size] = p.y();
       leaf.z[i % leaf_size] = p.z();
@@ -110,16 +110,16 @@ class ToolPoints {
   [[nodiscard]] std::span<const S> areas() const noexcept { return areas_; }
   [[nodiscard]] S contact_area() const noexcept { return contact_area_; }
   [[nodiscard]] Vec3<S> centre_of_mass() const noexcept { return centre_of_mass_; }
-  /// The `lane_count` points from `begin` on, where a leaf begins; the last leaf is filled up with its last
+  /// The `batch_size` points from `begin` on, where a leaf begins; the last leaf is filled up with its last
   /// point.
-  [[nodiscard]] const PointLanes<S>& lanes(std::size_t begin) const noexcept {
+  [[nodiscard]] const PointBatch<S>& lanes(std::size_t begin) const noexcept {
     return lanes_[begin / leaf_size];
   }
   /// The tree; the first node's ball holds all points.
   [[nodiscard]] std::span<const Node> nodes() const noexcept { return nodes_; }
 
  private:
-  static constexpr std::uint32_t leaf_size = static_cast<std::uint32_t>(lane_count);
+  static constexpr std::uint32_t leaf_size = static_cast<std::uint32_t>(batch_size);
 
   void build(const std::vector<Vec3<S>>& points, std::uint32_t begin, std::uint32_t end) {
     const std::size_t index = nodes_.size();
@@ -150,7 +150,7 @@ class ToolPoints {
   }
 
   std::vector<Vec3<S>> points_;
-  std::vector<PointLanes<S>> lanes_;  // the same points, leaf by leaf
+  std::vector<PointBatch<S>> lanes_;  // the same points, leaf by leaf
   std::vector<S> areas_;
   std::vector<std::uint32_t> original_;
   std::vector<Node> nodes_;

@@ -69,23 +69,24 @@ class Box {
     return {blend.depth, Vec3<S>(w[0] - w[1], w[2] - w[3], w[4] - w[5])};
   }
 
-  /// The same for `lane_count` points.
-  PALPATE_FLATTEN void penetration(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
-    using Lanes = detail::LaneArray<S>;
-    using detail::lane_array;
+  /// The same of a batch.
+  PALPATE_FLATTEN void penetration(const PointBatch<S>& x, PenetrationBatch<S>& in) const noexcept {
+    if (!detail::all_finite(x)) return detail::penetrate_one_by_one(*this, x, in);
+    // Six faces do not stay in four registers: then the whole batch.
+    using V = std::conditional_t<detail::batch_simd<S>::registers == 1, detail::batch_simd<S>,
+                                 detail::Simd<S, static_cast<int>(batch_size)>>;
     const Vec3<S>& h = p_.half;
-    const Lanes rx = lane_array(x.x) - p_.centre.x(), ry = lane_array(x.y) - p_.centre.y(),
-                rz = lane_array(x.z) - p_.centre.z();
-    if (!is_finite(S((rx.abs() + ry.abs() + rz.abs()).sum())))
-      return detail::penetrate_one_by_one(*this, x, lane_count, in);
-    std::array<Lanes, 6> d{h.x() - rx, h.x() + rx, h.y() - ry, h.y() + ry, h.z() - rz, h.z() + rz}, w;
-    const Lanes within = detail::positive_faces<Lanes, S>(d, h.minCoeff());
-    Lanes depth;
-    detail::edge_blend(d, depth, w);
-    lane_array(in.depth) = within * depth;
-    lane_array(in.gradient_x) = within * (w[0] - w[1]);
-    lane_array(in.gradient_y) = within * (w[2] - w[3]);
-    lane_array(in.gradient_z) = within * (w[4] - w[5]);
+    for (std::size_t i = 0; i < batch_size; i += V::size()) {
+      const detail::SimdVec3<V> r = detail::load_from<V>(x, i, p_.centre);
+      std::array<V, 6> w;
+      V depth;
+      const auto inside = detail::edge_blend<V, 6>(
+          {h.x() - r.x, h.x() + r.x, h.y() - r.y, h.y() + r.y, h.z() - r.z, h.z() + r.z}, h.minCoeff(), depth,
+          w);
+      detail::store(in, i, select(inside, depth, V{}),
+                    detail::SimdVec3<V>{select(inside, w[0] - w[1], V{}), select(inside, w[2] - w[3], V{}),
+                                        select(inside, w[4] - w[5], V{})});
+    }
   }
 
   [[nodiscard]] bool inside(const Vec3<S>& x) const noexcept { return within(x - p_.centre); }

@@ -23,8 +23,8 @@ namespace palpate {
 /// reports a list without triangles, a bad index, or a vertex that is not finite or beyond 1e6 m.
 ///
 /// Queries and moves take no heap; each ends after at most one visit to every node. Non-finite queries:
-/// closest() gives the start triangle, raycast() and overlap() nothing. A vertex moved to a place that is not
-/// finite stays.
+/// closest() gives the start triangle, raycast() and overlap() nothing. A vertex moved to a position that is
+/// not finite stays.
 template <Real S>
 class TriangleBvh {
  public:
@@ -53,7 +53,8 @@ class TriangleBvh {
         if (v >= vertices_.size())
           fail_at("TriangleBvh", "vertex does not exist", "triangle", t, static_cast<double>(v));
     for (std::size_t v = 0; v < vertices_.size(); ++v)
-      if (!usable(vertices_[v])) fail_at("TriangleBvh", "place must be finite and below 1e6 m", "vertex", v);
+      if (!usable(vertices_[v]))
+        fail_at("TriangleBvh", "position must be finite and below 1e6 m", "vertex", v);
     std::vector<Box> boxes(n);
     Box all;
     for (std::size_t t = 0; t < n; ++t) {
@@ -108,9 +109,9 @@ class TriangleBvh {
   /// A query point as the boxes see it.
   struct Cull {
     std::array<float, 3> x;
-    S slack;  // [m], more than the rounding of a distance to a box; < 0: too far for float, look at everything
+    S slack;  // [m], more than the rounding of a distance to a box; < 0: too far for float, visit all
     static constexpr S widened = S(1.000002L);  // of a square, in float
-    /// What a squared distance to a box must not exceed for the box to hold something at d2 or nearer.
+    /// What a squared distance to a box must not exceed for the box to contain something at d2 or nearer.
     [[nodiscard]] float limit(S d2) const noexcept {
       if (slack < S(0)) return (std::numeric_limits<float>::max)();
       const S d = std::sqrt(d2) + slack;
@@ -188,7 +189,7 @@ class TriangleBvh {
     const detail::ShearedRay<S> ray(origin, d);
     Vec3<S> inverse;
     for (int i = 0; i < 3; ++i) inverse[i] = S(1) / (std::abs(d[i]) > S(1e-20L) ? d[i] : S(1e-20L));
-    // More than the rounding of a place on the ray: a grazed box must not be missed.
+    // More than the rounding of a position on the ray: a grazed box must not be missed.
     const Vec3<S> from = origin - origin_;
     const S guard = S(4) * S(std::numeric_limits<float>::epsilon()) * reach_ +
                     S(8) * std::numeric_limits<S>::epsilon() *
@@ -215,13 +216,13 @@ class TriangleBvh {
           continue;
         }
         // Nearest on top.
-        std::size_t place = top++;
-        for (; place > bottom && enters[place - 1] < in; --place) {
-          enters[place] = enters[place - 1];
-          stack[place] = stack[place - 1];
+        std::size_t position = top++;
+        for (; position > bottom && enters[position - 1] < in; --position) {
+          enters[position] = enters[position - 1];
+          stack[position] = stack[position - 1];
         }
-        enters[place] = in;
-        stack[place] = node.child[i];
+        enters[position] = in;
+        stack[position] = node.child[i];
       }
     }
     if (best.triangle != none) best.t /= scale;
@@ -243,16 +244,16 @@ class TriangleBvh {
         });
   }
 
-  /// Puts vertex which[i] at place[i] [m] and refits the boxes above its triangles. Cost: those boxes.
-  void move(std::span<const std::uint32_t> which, std::span<const Vec3<S>> place) noexcept {
+  /// Puts vertex which[i] at position[i] [m] and refits the boxes above its triangles. Cost: those boxes.
+  void move(std::span<const std::uint32_t> which, std::span<const Vec3<S>> position) noexcept {
     if (++epoch_ == 0) {
       std::fill(stamp_.begin(), stamp_.end(), 0u);
       epoch_ = 1;
     }
     for (std::size_t i = 0; i < which.size(); ++i) {
       const std::uint32_t v = which[i];
-      if (!usable(place[i])) continue;
-      vertices_[v] = place[i];
+      if (!usable(position[i])) continue;
+      vertices_[v] = position[i];
       for (std::uint32_t k = leaf_start_[v]; k < leaf_start_[v + 1]; ++k) {
         for (std::uint32_t n = leaf_[k]; n != none && stamp_[n] != epoch_; n = parent_[n]) stamp_[n] = epoch_;
       }
@@ -261,10 +262,10 @@ class TriangleBvh {
     measure();
   }
 
-  /// Puts every vertex at its place [m]; linear.
-  void move_all(std::span<const Vec3<S>> place) noexcept {
+  /// Puts every vertex at its position [m]; linear.
+  void move_all(std::span<const Vec3<S>> position) noexcept {
     for (std::size_t v = 0; v < vertices_.size(); ++v)
-      if (usable(place[v])) vertices_[v] = place[v];
+      if (usable(position[v])) vertices_[v] = position[v];
     refit_all();
   }
 
@@ -332,7 +333,7 @@ class TriangleBvh {
       if (stamp_[node.child[i]] == epoch_) refit_stamped(node.child[i]);
     refit(node);
   }
-  // Largest coordinate relative to the origin.
+  // Greatest coordinate relative to the origin.
   void measure() noexcept {
     reach_ = S(0);
     for (std::size_t i = 0; i < nodes_[0].count; ++i) {

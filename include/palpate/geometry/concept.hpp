@@ -3,20 +3,21 @@
 
 /// @file What an elastic object's undeformed surface must offer. Read this before writing one.
 ///
-/// | shipped          | shape                                   | use it when                                        |
-/// |------------------|-----------------------------------------|----------------------------------------------------|
-/// | `Sphere`         | ball                                    | closed form everywhere                             |
-/// | `Ellipsoid`      | three semi-axes, ratios to 1 : 1000     | the paper's body                                   |
-/// | `Box`            | cuboid                                  | flat faces; force rounds off over the edges        |
-/// | `Cylinder`       | solid with flat caps, axis y            | ditto                                              |
-/// | `Superellipsoid` | between box, ellipsoid and cylinder     | rounded boxes and pills                            |
-/// | `MeshSurface`    | any closed triangle mesh                | a shape from a file; exact distance to it          |
-/// | `SampledSurface` | samples of one of the others            | a mesh or superellipsoid in a fast tick            |
+/// | shipped          | shape                               | use it when                                   |
+/// |------------------|-------------------------------------|-----------------------------------------------|
+/// | `Sphere`         | ball                                | closed form everywhere                        |
+/// | `Ellipsoid`      | three semi-axes, ratios to 1 : 1000 | the paper's body                              |
+/// | `Box`            | cuboid                              | flat faces; force rounds off over the edges   |
+/// | `Cylinder`       | solid with flat caps, axis y        | ditto                                         |
+/// | `Superellipsoid` | between box, ellipsoid and cylinder | rounded boxes and pills                       |
+/// | `MeshSurface`    | any closed triangle mesh            | a shape from a file; exact distance to it     |
+/// | `SampledSurface` | samples of one of the others        | a mesh or superellipsoid in a fast tick       |
 ///
 /// Coordinates are the object's own [m]; give the tool's pose in them. A surface holds no state that a query
 /// changes, uses no heap in a query, and gives the same bits for the same input.
 
 #include <palpate/config.hpp>
+#include <palpate/core/simd_vec3.hpp>
 #include <palpate/core/vector.hpp>
 
 #include <array>
@@ -44,19 +45,20 @@ struct Penetration {
   Vec3<S> gradient;  ///< [-]
 };
 
-/// So many points are worked on at once: two to eight vector registers' worth, whose operations do not wait
-/// for each other.
-inline constexpr std::size_t lane_count = 16;
+/// Points that are worked on at once: two to eight vector registers' worth, whose operations do not wait for
+/// each other.
+inline constexpr std::size_t batch_size = 16;
 
-/// Points, coordinate by coordinate. By the cache line, so that no register's worth lies in two of them.
-template <Real S, std::size_t N = lane_count>
-struct alignas(64) PointLanes {
+/// Positions of N points, coordinate by coordinate. By the cache line, so that no register's worth lies in
+/// two of them; in memory, so that the layout is the same in files compiled with other vector flags.
+template <Real S, std::size_t N = batch_size>
+struct alignas(64) PointBatch {
   std::array<S, N> x, y, z;  ///< [m]
 };
 
 /// Their penetration.
-template <Real S, std::size_t N = lane_count>
-struct alignas(64) PenetrationLanes {
+template <Real S, std::size_t N = batch_size>
+struct alignas(64) PenetrationBatch {
   std::array<S, N> depth;                               ///< [m]
   std::array<S, N> gradient_x, gradient_y, gradient_z;  ///< [-]
 
@@ -69,33 +71,46 @@ struct alignas(64) PenetrationLanes {
 };
 
 namespace detail {
-/// One number per lane as whole vector registers, whatever a compiler makes of loops. Not aligned: its layout
-/// is the same in files compiled with other vector flags.
-template <Real S, int N = static_cast<int>(lane_count)>
-using LaneArray = Eigen::Array<S, N, 1, Eigen::DontAlign>;
+/// In what a batch's formulas are worked out, by counts of instructions: a register with AVX, whose
+/// instructions take a third operand and repeat a number from memory; four without.
+#if defined(__AVX__)
 template <Real S>
-[[nodiscard]] PALPATE_INLINE Eigen::Map<const LaneArray<S>> lane_array(
-    const std::array<S, lane_count>& a) noexcept {
-  return Eigen::Map<const LaneArray<S>>(a.data());
-}
+using batch_simd = simd_at_most<S, static_cast<int>(batch_size)>;
+#else
 template <Real S>
-[[nodiscard]] PALPATE_INLINE Eigen::Map<LaneArray<S>> lane_array(std::array<S, lane_count>& a) noexcept {
-  return Eigen::Map<LaneArray<S>>(a.data());
-}
+using batch_simd = simd_group<S>;
+#endif
 
-/// 1 for lanes > 0, 0 for the others. Lanes that are > 0 are at least epsilon / 2 times `size` there: they
-/// are differences of numbers of that size. By arithmetic, because Eigen chooses between vectors one number
-/// at a time.
-template <class V, Real S>
-[[nodiscard]] PALPATE_INLINE V one_if_positive(const V& x, S size) noexcept {
-  return (x * (S(4) / (std::numeric_limits<S>::epsilon() * size))).max(S(0)).min(S(1));
+/// Is every coordinate finite?
+template <Real S, std::size_t N>
+[[nodiscard]] PALPATE_INLINE bool all_finite(const PointBatch<S, N>& x) noexcept {
+  using V = simd_at_most<S, static_cast<int>(N)>;
+  V sum{};
+  for (std::size_t i = 0; i < N; i += V::size())
+    sum += load<V>(&x.x[i]) + load<V>(&x.y[i]) + load<V>(&x.z[i]);
+  return is_finite(reduce(sum));
 }
-
-/// Penetration of the first `count` points with the surface's function for one.
-template <class B, Real S>
-inline void penetrate_one_by_one(const B& body, const PointLanes<S>& x, std::size_t count,
-                                 PenetrationLanes<S>& in) noexcept {
-  for (std::size_t i = 0; i < count; ++i) in.set(i, body.penetration(Vec3<S>(x.x[i], x.y[i], x.z[i])));
+/// Penetration of points `first` .. first + count - 1 with the surface's function for one.
+template <class B, Real S, std::size_t N>
+inline void penetrate_one_by_one(const B& body, const PointBatch<S, N>& x, PenetrationBatch<S, N>& in,
+                                 std::size_t first = 0, std::size_t count = N) noexcept {
+  for (std::size_t i = first; i < first + count; ++i)
+    in.set(i, body.penetration(Vec3<S>(x.x[i], x.y[i], x.z[i])));
+}
+/// Stores one Simd of a batch from point i on.
+template <class V, Real S, std::size_t N>
+PALPATE_INLINE void store(PenetrationBatch<S, N>& in, std::size_t i, const V& depth,
+                          const SimdVec3<V>& gradient) noexcept {
+  store(&in.depth[i], depth);
+  store(&in.gradient_x[i], gradient.x);
+  store(&in.gradient_y[i], gradient.y);
+  store(&in.gradient_z[i], gradient.z);
+}
+/// Positions of one Simd of a batch from point i on, less `origin` [m].
+template <class V, Real S, std::size_t N>
+[[nodiscard]] PALPATE_INLINE SimdVec3<V> load_from(const PointBatch<S, N>& x, std::size_t i,
+                                                   const Vec3<S>& origin) noexcept {
+  return {load<V>(&x.x[i]) - origin.x(), load<V>(&x.y[i]) - origin.y(), load<V>(&x.z[i]) - origin.z()};
 }
 }  // namespace detail
 
@@ -132,13 +147,10 @@ concept HasPenetration = requires(const B& body, const Vec3<typename B::Scalar>&
   { body.penetration(x) } noexcept -> std::same_as<Penetration<typename B::Scalar>>;
 };
 
-template <
-    class B,
-    std::size_t N =
-        lane_count>  // optional: the same for N points at once, to rounding; the solver uses it where it
-concept HasPenetrationLanes =  // is there, for `lane_count` points or for twice as many
-    requires(const B& body, const PointLanes<typename B::Scalar, N>& x,
-             PenetrationLanes<typename B::Scalar, N>& in) {
+template <class B, std::size_t N = batch_size>  // optional: the same of N points at once, to rounding. The
+concept HasPenetrationBatch =                   // solver uses it for batch_size points or twice as many.
+    requires(const B& body, const PointBatch<typename B::Scalar, N>& x,
+             PenetrationBatch<typename B::Scalar, N>& in) {
       { body.penetration(x, in) } noexcept;
     };
 

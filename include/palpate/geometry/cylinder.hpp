@@ -15,7 +15,7 @@ namespace palpate {
 /// | symbol | name          | unit | range                                           |
 /// |--------|---------------|------|-------------------------------------------------|
 /// | R      | `radius`      | m    | [1e-6, 1e6]                                     |
-/// | h      | `half_height` | m    | [1e-6, 1e6], h / R within 1 : 1000 either way   |
+/// | h      | `half_height` | m    | [1e-6, 1e6], h / R within 1 : 1000 and 1000 : 1   |
 /// | m      | `centre`      | m    | finite, below 1e6                               |
 ///
 /// closest(): the exact distance. Outside, its normal is along x - p, also on the rims. Ties inside: the side
@@ -58,8 +58,8 @@ class Cylinder {
     }
     if (above <= S(0)) return {p_.centre + R * out + Vec3<S>(S(0), r.y(), S(0)), out, over};
     if (over <= S(0)) return {p_.centre + Vec3<S>(r.x(), side * h, r.z()), Vec3<S>(S(0), side, S(0)), above};
-    const S larger = over > above ? over : above, u = over / larger, v = above / larger;
-    const S length = std::sqrt(u * u + v * v), distance = larger * length;
+    const S size = (std::max)(over, above), u = over / size, v = above / size;
+    const S length = std::sqrt(u * u + v * v), distance = size * length;
     return {p_.centre + R * out + Vec3<S>(S(0), side * h, S(0)),
             Vec3<S>((u * out + Vec3<S>(S(0), v * side, S(0))) / length),
             is_finite(distance) ? distance : (std::numeric_limits<S>::max)()};
@@ -78,25 +78,25 @@ class Cylinder {
     return {blend.depth, slope * outward(r) + Vec3<S>(S(0), w[1] - w[2], S(0))};
   }
 
-  /// The same for `lane_count` points.
-  PALPATE_FLATTEN void penetration(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
-    using Lanes = detail::LaneArray<S>;
-    using detail::lane_array;
+  /// The same of a batch.
+  PALPATE_FLATTEN void penetration(const PointBatch<S>& x, PenetrationBatch<S>& in) const noexcept {
+    using V = detail::batch_simd<S>;
     const S R = p_.radius, h = p_.half_height;
-    const Lanes rx = lane_array(x.x) - p_.centre.x(), ry = lane_array(x.y) - p_.centre.y(),
-                rz = lane_array(x.z) - p_.centre.z(), square = rx * rx + rz * rz;
-    if (!is_finite(S(square.sum() + ry.abs().sum())))
-      return detail::penetrate_one_by_one(*this, x, lane_count, in);
-    const Lanes rho = square.sqrt(), above = rho.max(R / S(2)), below = rho.min(R / S(2));
-    std::array<Lanes, 3> d{(R - above) + (R / S(4) - below * (below / R)), h - ry, h + ry}, w;
-    const Lanes within = detail::positive_faces<Lanes, S>(d, half().minCoeff());
-    Lanes depth;
-    detail::edge_blend(d, depth, w);
-    const Lanes across = within * w[0] / above;  // 2 rho / R times 1 / rho where deep
-    lane_array(in.depth) = within * depth;
-    lane_array(in.gradient_x) = across * rx;
-    lane_array(in.gradient_y) = within * (w[1] - w[2]);
-    lane_array(in.gradient_z) = across * rz;
+    V sum{};
+    for (std::size_t i = 0; i < batch_size; i += V::size()) {
+      const detail::SimdVec3<V> r = detail::load_from<V>(x, i, p_.centre);
+      const V square = r.x * r.x + r.z * r.z;
+      sum += square + abs(r.y);
+      const V rho = sqrt(square), above = (detail::max)(rho, R / S(2)), below = (detail::min)(rho, R / S(2));
+      std::array<V, 3> w;
+      V depth;
+      const auto inside = detail::edge_blend<V, 3>(
+          {(R - above) + (R / S(4) - below * (below / R)), h - r.y, h + r.y}, half().minCoeff(), depth, w);
+      const V across = select(inside, w[0] / above, V{});  // 2 rho / R times 1 / rho where deep
+      detail::store(in, i, select(inside, depth, V{}),
+                    detail::SimdVec3<V>{across * r.x, select(inside, w[1] - w[2], V{}), across * r.z});
+    }
+    if (!is_finite(reduce(sum))) detail::penetrate_one_by_one(*this, x, in);
   }
 
   [[nodiscard]] bool inside(const Vec3<S>& x) const noexcept { return within(x - p_.centre); }

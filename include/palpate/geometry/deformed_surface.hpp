@@ -3,8 +3,8 @@
 
 /// @file  Contact with the shape as it is now: what has bulged out is touched where it is seen.
 
+#include <palpate/geometry/detail/near_batch.hpp>
 #include <palpate/geometry/detail/near_blend.hpp>
-#include <palpate/geometry/detail/near_lanes.hpp>
 #include <palpate/geometry/triangle_mesh.hpp>
 
 #include <span>
@@ -47,16 +47,16 @@ class DeformedSurface {
         height_(rest_.size(), S(0)),
         blend_(detail::mean_edge(mesh.area(), mesh.triangles().size())) {}
 
-  /// Every vertex's place [m], in the mesh's order; linear. One that is not finite stays where it was.
+  /// Every vertex's position [m], in the mesh's order; linear. One that is not finite stays where it was.
   void update(std::span<const Vec3<S>> vertices) noexcept {
     tree_.move_all(vertices);
     highest_ = S(0);
     for (std::size_t v = 0; v < rest_.size(); ++v) raise(v);
   }
 
-  /// The places [m] of some vertices; the others stay. Refits only the boxes above them.
-  void update(std::span<const std::uint32_t> which, std::span<const Vec3<S>> places) noexcept {
-    tree_.move(which, places);
+  /// The positions [m] of some vertices; the others stay. Refits only the boxes above them.
+  void update(std::span<const std::uint32_t> which, std::span<const Vec3<S>> positions) noexcept {
+    tree_.move(which, positions);
     for (const std::uint32_t v : which) raise(v);
     highest_ = S(0);
     for (const S h : height_) highest_ = (std::max)(highest_, h);
@@ -74,25 +74,25 @@ class DeformedSurface {
                                      [this](const auto& at) { return bulge(at); }, bulge(near)));
   }
 
-  /// The same for `lane_count` points; below a bulge, where they are close together, by one walk of the tree.
-  void penetration(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
+  /// The same of a batch; below a bulge, where they are close together, by one walk of the tree.
+  void penetration(const PointBatch<S>& x, PenetrationBatch<S>& in) const noexcept {
     if (!(highest_ > S(0))) return undeformed(x, in);
-    const auto px = detail::lane_array(x.x), py = detail::lane_array(x.y), pz = detail::lane_array(x.z);
-    if (is_finite(S(px.sum() + py.sum() + pz.sum()))) {
-      const Vec3<S> low(px.minCoeff(), py.minCoeff(), pz.minCoeff()),
-          high(px.maxCoeff(), py.maxCoeff(), pz.maxCoeff()), middle = low + (high - low) / S(2);
+    using V = detail::Simd<S, static_cast<int>(batch_size)>;
+    const V px(x.x.data()), py(x.y.data()), pz(x.z.data());
+    if (is_finite(reduce(px) + reduce(py) + reduce(pz))) {
+      const Vec3<S> low(reduce_min(px), reduce_min(py), reduce_min(pz)),
+          high(reduce_max(px), reduce_max(py), reduce_max(pz)), middle = low + (high - low) / S(2);
       const S spread = (high - low).norm() / S(2);
       if (body_.separated(middle, spread + highest_)) return undeformed(x, in);
-      PointLanes<S> lowered;
-      const auto lower = [&](const detail::NearLanes<S>& lanes) {
-        std::array<detail::LaneArray<S>, 3> b;
-        const detail::LaneArray<S> weight = lanes.mean(
+      PointBatch<S> lowered;
+      const auto lower = [&](const detail::NearBatch<S>& batch) {
+        std::array<std::array<S, batch_size>, 3> b;
+        const std::array<S, batch_size> weight = batch.mean(
             blend_, [this](std::uint32_t triangle, std::size_t corner) { return bulge_at(triangle, corner); },
             b);
-        for (std::size_t i = 0; i < lane_count; ++i) {
-          const auto k = static_cast<Eigen::Index>(i);
-          const bool on_mesh = !(weight[k] > S(0));
-          const Vec3<S> here = on_mesh ? bulge(lanes.nearest(i)) : Vec3<S>(b[0][k], b[1][k], b[2][k]);
+        for (std::size_t i = 0; i < batch_size; ++i) {
+          const bool on_mesh = !(weight[i] > S(0));
+          const Vec3<S> here = on_mesh ? bulge(batch.nearest(i)) : Vec3<S>(b[0][i], b[1][i], b[2][i]);
           lowered.x[i] = x.x[i] - here.x();
           lowered.y[i] = x.y[i] - here.y();
           lowered.z[i] = x.z[i] - here.z();
@@ -100,11 +100,11 @@ class DeformedSurface {
       };
       if (blend_.shares(spread)) {
         const S far = std::sqrt(tree_.closest(middle).distance2) + spread;
-        if (detail::with_near_lanes(tree_, blend_, x, middle, spread, far, lower))
+        if (detail::with_near_batch(tree_, blend_, x, middle, spread, far, lower))
           return undeformed(lowered, in);
       }
     }
-    detail::penetrate_one_by_one(*this, x, lane_count, in);
+    detail::penetrate_one_by_one(*this, x, in);
   }
 
   /// True only if no point of the ball is inside the undeformed body or below a bulge.
@@ -135,11 +135,11 @@ class DeformedSurface {
     return height_[v] * normal_[v];
   }
 
-  void undeformed(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
-    if constexpr (HasPenetrationLanes<B>)
+  void undeformed(const PointBatch<S>& x, PenetrationBatch<S>& in) const noexcept {
+    if constexpr (HasPenetrationBatch<B>)
       body_.penetration(x, in);
     else
-      detail::penetrate_one_by_one(body_, x, lane_count, in);
+      detail::penetrate_one_by_one(body_, x, in);
   }
 
   B body_;

@@ -4,7 +4,6 @@
 /// @file  Ellipsoid: the paper's elastic body, with a closest point that holds from the centre to 1e6 m.
 
 #include <palpate/geometry/detail/lattice_mesh.hpp>
-#include <palpate/geometry/detail/one_lane.hpp>
 #include <palpate/geometry/detail/shape_tools.hpp>
 
 namespace palpate {
@@ -80,19 +79,23 @@ class Ellipsoid {
     const S g = r.cwiseProduct(inverse_).squaredNorm();
     if (!is_finite(g) || !(g < S(1))) return {S(0), Vec3<S>::Zero()};
     S depth;
-    Vec3<S> n;
-    if (near_surface<1>(&x.x(), &x.y(), &x.z(), &depth, &n.x(), &n.y(), &n.z())) return {depth, n};
+    detail::SimdVec3<S> n;
+    if (near_surface<S>({r.x(), r.y(), r.z()}, depth, n)) return {depth, Vec3<S>(n.x, n.y, n.z)};
     const Foot foot = solve(r);
     return {-foot.distance, foot.normal};
   }
 
-  /// The same for `lane_count` points.
-  void penetration(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
-    constexpr int N = static_cast<int>(lane_count);
-    if (near_surface<N>(x.x.data(), x.y.data(), x.z.data(), in.depth.data(), in.gradient_x.data(),
-                        in.gradient_y.data(), in.gradient_z.data()))
-      return;
-    detail::penetrate_one_by_one(*this, x, lane_count, in);
+  /// The same of a batch.
+  void penetration(const PointBatch<S>& x, PenetrationBatch<S>& in) const noexcept {
+    using V = detail::Simd<S, (std::min)(2 * detail::native_size<S>, static_cast<int>(batch_size))>;
+    for (std::size_t i = 0; i < batch_size; i += V::size()) {
+      V depth;
+      detail::SimdVec3<V> n;
+      if (near_surface(detail::load_from<V>(x, i, p_.centre), depth, n))
+        detail::store(in, i, depth, n);
+      else
+        detail::penetrate_one_by_one(*this, x, in, i, V::size());
+    }
   }
 
   [[nodiscard]] bool inside(const Vec3<S>& x) const noexcept {
@@ -101,7 +104,7 @@ class Ellipsoid {
   }
 
   /// True only if no point of the ball (c, r) is inside; false when anything is not finite or r < 0.
-  /// Box test, then |c_i / a_i| > 1 + r / a_min: that larger ellipsoid holds the body grown by r, because
+  /// Box test, then |c_i / a_i| > 1 + r / a_min: that scaled ellipsoid contains the body grown by r, because
   /// its support function (1 + r / a_min) h(n) >= h(n) + r, as h(n) >= a_min.
   [[nodiscard]] bool separated(const Vec3<S>& c, S r) const noexcept {
     const Vec3<S> d = c - p_.centre;
@@ -137,8 +140,8 @@ class Ellipsoid {
     const Mat3<S> W = (slope_.cwiseAbs2() / (min_ * m)).asDiagonal();
     Curvature<S> c = detail::principal<S>(g / m, W);
     const S volume_ratio = slope_.prod() / (m * m);
-    const S smaller = volume_ratio * volume_ratio / (min_ * min_ * c.k1);
-    c.k2 = smaller < c.k1 ? smaller : c.k1;
+    const S flatter = volume_ratio * volume_ratio / (min_ * min_ * c.k1);
+    c.k2 = flatter < c.k1 ? flatter : c.k1;
     return c;
   }
   /// Outward unit normal at a surface point.
@@ -161,9 +164,7 @@ class Ellipsoid {
 
   /// a_min^2 / a_max: the smallest radius of curvature.
   [[nodiscard]] S reach() const noexcept { return min_ * (min_ / p_.axes.maxCoeff()); }
-  [[nodiscard]] S volume() const noexcept {
-    return S(4.18879020478639098461685784437267051L) * p_.axes.prod();
-  }
+  [[nodiscard]] S volume() const noexcept { return detail::four_pi_thirds<S> * p_.axes.prod(); }
   [[nodiscard]] Vec3<S> lower() const noexcept { return p_.centre - p_.axes; }
   [[nodiscard]] Vec3<S> upper() const noexcept { return p_.centre + p_.axes; }
   [[nodiscard]] const Params& params() const noexcept { return p_; }
@@ -179,70 +180,65 @@ class Ellipsoid {
     S distance;
   };
 
-  // Penetration of N points near the surface, 0 outside; one vector instruction for each operation where N >
-  // 1. False where one is too deep for this or not finite: then nothing is said of any. As solve() with s = w
-  // - 1 and q_i = z_i / (1 + s j_i), j_i = (a_min / a_i)^2; but the first step needs no division by 1 + s
-  // j_i, and after the second the change of q is small enough for three terms of its series.
-  template <int N>
-  PALPATE_FLATTEN [[nodiscard]] bool near_surface(const S* x, const S* y, const S* z, S* depth, S* nx, S* ny,
-                                                  S* nz) const noexcept {
-    using Lanes = detail::Some<S, N>;
+  // Penetration near the surface of points at r from the centre, 0 outside. False where one is too deep for
+  // this or not finite: then nothing is said of any. As solve() with s = w - 1 and q_i = z_i / (1 + s j_i),
+  // j_i = (a_min / a_i)^2; but the first step needs no division by 1 + s j_i, and after the second the change
+  // of q is small enough for three terms of its series.
+  template <class V>
+  [[nodiscard]] PALPATE_INLINE bool near_surface(const detail::SimdVec3<V>& r, V& depth,
+                                                 detail::SimdVec3<V>& normal) const noexcept {
+    using detail::abs, detail::reduce, detail::reduce_max, detail::reduce_min, detail::select, detail::sqrt;
     const Vec3<S> j = slope_.cwiseAbs2();
-    const Lanes zx = (detail::load<S, N>(x) - p_.centre.x()) * inverse_.x(),
-                zy = (detail::load<S, N>(y) - p_.centre.y()) * inverse_.y(),
-                zz = (detail::load<S, N>(z) - p_.centre.z()) * inverse_.z();
-    Lanes qx = zx * zx, qy = zy * zy, qz = zz * zz, G = qx + qy + qz, f = G - S(1);
-    const Lanes within = detail::one_if_positive<Lanes, S>(-f, S(1));
-    const bool usable = is_finite(S(G.sum())) && S(G.minCoeff()) > S(0.25);
+    const V zx = r.x * inverse_.x(), zy = r.y * inverse_.y(), zz = r.z * inverse_.z();
+    V qx = zx * zx, qy = zy * zy, qz = zz * zz, G = qx + qy + qz, f = G - S(1);
+    const auto inside = f < V{};
+    const bool usable = is_finite(reduce(G)) && reduce_min(G) > S(0.25);  // |z| > 1/2
     // 1 / H, and sqrt(G) - 1 by its continued fraction: by one division, but of a single point, which waits
     // for results and not for the divider.
-    const Lanes h = qx * j.x() + qy * j.y() + qz * j.z(), below = S(16) + f * (S(12) + f);
-    Lanes per_h, per_below;
-    if constexpr (N == 1) {
-      per_h = h.inverse(), per_below = below.inverse();
+    const V h = qx * j.x() + qy * j.y() + qz * j.z(), below = S(16) + f * (S(12) + f);
+    V per_h, per_below;
+    if constexpr (Real<V>) {
+      per_h = S(1) / h, per_below = S(1) / below;
     } else {
-      const Lanes per = (h * below).inverse();
+      const V per = S(1) / (h * below);
       per_h = below * per, per_below = h * per;
     }
-    Lanes s = step<Lanes>(G, f * (S(8) + S(4) * f) * per_below, per_h, qx * (j.x() * j.x()),
-                          qy * (j.y() * j.y()), qz * (j.z() * j.z()), Lanes::Constant(j.x()),
-                          Lanes::Constant(j.y()), Lanes::Constant(j.z()));
+    V s = step<V>(G, f * (S(8) + S(4) * f) * per_below, per_h, qx * (j.x() * j.x()), qy * (j.y() * j.y()),
+                  qz * (j.z() * j.z()), j.x(), j.y(), j.z());
     bool settled = false;
     for (int k = 0; k < 3 && !settled; ++k) {
-      const Lanes dx = S(1) + s * j.x(), dy = S(1) + s * j.y(), dz = S(1) + s * j.z();
-      Lanes vx, vy, vz;
-      if constexpr (N == 1) {
-        vx = dx.inverse(), vy = dy.inverse(), vz = dz.inverse();
+      const V dx = S(1) + s * j.x(), dy = S(1) + s * j.y(), dz = S(1) + s * j.z();
+      V vx, vy, vz;
+      if constexpr (Real<V>) {
+        vx = S(1) / dx, vy = S(1) / dy, vz = S(1) / dz;
       } else {
-        const Lanes dyz = dy * dz, v = (dx * dyz).inverse(), vdx = v * dx;
+        const V dyz = dy * dz, v = S(1) / (dx * dyz), vdx = v * dx;
         vx = v * dyz, vy = vdx * dz, vz = vdx * dy;
       }
-      const Lanes ux = vx * j.x(), uy = vy * j.y(), uz = vz * j.z();
-      const Lanes px = zx * vx, py = zy * vy, pz = zz * vz;
+      const V ux = vx * j.x(), uy = vy * j.y(), uz = vz * j.z();
+      const V px = zx * vx, py = zy * vy, pz = zz * vz;
       qx = px * px, qy = py * py, qz = pz * pz, G = qx + qy + qz, f = G - S(1);
-      const Lanes hx = qx * ux, hy = qy * uy, hz = qz * uz;
+      const V hx = qx * ux, hy = qy * uy, hz = qz * uz;
       // f is small by now: four terms of the series of sqrt(1 + f) - 1.
-      const Lanes t = f * (S(0.5) - f * (S(0.125) - f * (S(0.0625) - f * S(0.0390625))));
-      const Lanes change = step<Lanes>(G, t, (hx + hy + hz).inverse(), hx * ux, hy * uy, hz * uz, ux, uy, uz);
-      const Lanes ex = ux * change, ey = uy * change, ez = uz * change;
+      const V t = f * (S(0.5) - f * (S(0.125) - f * (S(0.0625) - f * S(0.0390625))));
+      const V change = step<V>(G, t, S(1) / (hx + hy + hz), hx * ux, hy * uy, hz * uz, ux, uy, uz);
+      const V ex = ux * change, ey = uy * change, ez = uz * change;
       // 1 - e + e^2 - e^3
-      const Lanes ex2 = ex * ex, ey2 = ey * ey, ez2 = ez * ez;
+      const V ex2 = ex * ex, ey2 = ey * ey, ez2 = ez * ez;
       qx = px - px * ex, qy = py - py * ey, qz = pz - pz * ez;
       qx += qx * ex2, qy += qy * ey2, qz += qz * ez2;
       s += change;
       // |q| may be 1 by chance before the step is small enough for its series: their next terms count too.
-      const Lanes e = ex2 + ey2 + ez2;
-      const Lanes wrong = ((qx * qx + qy * qy + qz * qz - S(1)).abs() + e * e) * within;
-      settled = usable && is_finite(S(wrong.sum())) && S(wrong.maxCoeff()) <= tolerance &&
-                S((s * within).minCoeff()) > S(-0.75);
+      const V e = ex2 + ey2 + ez2;
+      const V wrong = select(inside, abs(qx * qx + qy * qy + qz * qz - S(1)) + e * e, V{});
+      settled = usable && is_finite(reduce(wrong)) && reduce_max(wrong) <= tolerance &&
+                reduce_min(select(inside, s, V{})) > S(-0.75);  // w > 1/4, far from the poles
     }
     qx *= slope_.x(), qy *= slope_.y(), qz *= slope_.z();
     // The root and the division side by side.
-    const Lanes m2 = qx * qx + qy * qy + qz * qz, m = m2.sqrt(), r = within * (m * m2.inverse());
-    detail::store((s * within) * (m * -min_), depth);
-    detail::store(qx * r, nx);
-    detail::store(qy * r, ny);
-    detail::store(qz * r, nz);
+    const V m2 = qx * qx + qy * qy + qz * qz, m = sqrt(m2), per_m = select(inside, m * (S(1) / m2), V{});
+    depth = select(inside, s * (m * -min_), V{});
+    normal = {qx * per_m, qy * per_m, qz * per_m};
     return settled;
   }
 

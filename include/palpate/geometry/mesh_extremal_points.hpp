@@ -36,8 +36,8 @@ class CurvatureCells {
  public:
   struct Cell {
     std::uint64_t key = 0;
-    Vec3<double> place = Vec3<double>::Zero(), normal = Vec3<double>::Zero();  // integrals over area
-    double area = 0, curvature = 0;                                            // integrals; curvature: of H
+    Vec3<double> position = Vec3<double>::Zero(), normal = Vec3<double>::Zero();  // integrals over area
+    double area = 0, curvature = 0;  // integrals; curvature: of H
   };
 
   CurvatureCells(const Vec3<double>& low, double side) : low_(low), side_(side) {}
@@ -55,7 +55,7 @@ class CurvatureCells {
         cells_[++last] = cells_[i];
         continue;
       }
-      cells_[last].place += cells_[i].place;
+      cells_[last].position += cells_[i].position;
       cells_[last].normal += cells_[i].normal;
       cells_[last].area += cells_[i].area;
       cells_[last].curvature += cells_[i].curvature;
@@ -136,7 +136,7 @@ class CurvatureCells {
 
 /// Mean curvature [1/m] at every vertex, averaged over a ball of radius rho [m]; positive where convex.
 ///
-///     H(v) = sum_c K_c h_c / sum_c K_c a_c,     h = 1/2 sum_e |e| beta_e,     K = (1 - |x - v|^2 / rho^2)_+^2
+///     H(v) = sum_c K_c h_c / sum_c K_c a_c,   h = 1/2 sum_e |e| beta_e,   K = (1 - |x - v|^2 / rho^2)_+^2
 ///
 /// h is the exact integral of mean curvature over a polyhedron: its edges' lengths times the angles that they
 /// turn by, half to the triangle on each side; a is area [cohensteiner2003]. Sources are gathered in cubes c
@@ -177,7 +177,7 @@ template <Real S>
     double sum = 0, total = 0;
     cells.near(x, 5, [&](const detail::CurvatureCells::Cell& cell) {
       if (!(cell.area > 0) || !(cell.normal.dot(n) > 0)) return;
-      const double left = 1 - (cell.place / cell.area - x).squaredNorm() / (rho * rho);
+      const double left = 1 - (cell.position / cell.area - x).squaredNorm() / (rho * rho);
       if (!(left > 0)) return;
       sum += left * left * cell.curvature;
       total += left * left * cell.area;
@@ -195,8 +195,8 @@ template <Real S>
 /// ends of the axes, among them the saddles of curvature, and with them the points lie on all sides, as a
 /// partition needs. Then the local minima, dents and flats, likewise. A point beside an earlier one is left
 /// out: nearer than 2 rho with normals less than 60 degrees apart, or nearer than rho / 2 and not on the
-/// other side of a thin part. So is a minimum that is flat over 2 rho, as a box's face: it has no place. Six
-/// of `at_most` are kept for the axes.
+/// other side of a thin part. So is a minimum that is flat over 2 rho, as a box's face: it has no position.
+/// Six of `at_most` are kept for the axes.
 ///
 /// A body whose curvature varies by less than a tenth of its mean, as a sphere's, has the axes' ends only;
 /// where its axes are equal as well, those of the coordinate axes.
@@ -240,13 +240,13 @@ template <Real S>
                      [](const Peak& a, const Peak& b) { return a.prominence > b.prominence; });
   }
   std::vector<ExtremalPoint<S>> points;
-  const auto add = [&](const Vec3<S>& place, const Vec3<S>& normal, std::size_t most) {
+  const auto add = [&](const Vec3<S>& position, const Vec3<S>& normal, std::size_t most) {
     if (points.size() >= most) return;
     for (const ExtremalPoint<S>& p : points) {
-      const S away = (p.position - place).norm(), along = p.normal.dot(normal);
+      const S away = (p.position - position).norm(), along = p.normal.dot(normal);
       if ((away < S(2) * rho && along > S(0.5L)) || (away < rho / S(2) && along > S(-0.5L))) return;
     }
-    points.push_back({place, normal});
+    points.push_back({position, normal});
   };
   const TriangleBvh<S> tree(mesh.data());
   const auto shading = [&](std::uint32_t triangle, const Vec3<S>& weight) {
@@ -273,7 +273,7 @@ template <Real S>
         sum += weight * (mesh.vertices()[v] - top);
         total += weight;
       }
-      if (flat) continue;  // as a box's faces: no place is better than another
+      if (flat) continue;  // as a box's faces: no position is better than another
       const auto foot = tree.closest(top + sum / total);
       add(foot.position, unit_or<S>(shading(foot.triangle, foot.weight), mesh.vertex_normals()[peak.vertex]),
           most);
@@ -295,9 +295,9 @@ template <Real S>
   for (int axis = 2; axis >= 0; --axis) {
     Vec3<double> d =
         round ? Vec3<double>(Vec3<double>::Unit(axis)) : Vec3<double>(axes.eigenvectors().col(axis));
-    int largest = 0;  // the same sign whatever the eigen solver gives
-    d.cwiseAbs().maxCoeff(&largest);
-    if (d[largest] < 0) d = -d;
+    int greatest = 0;  // the same sign whatever the eigen solver gives
+    d.cwiseAbs().maxCoeff(&greatest);
+    if (d[greatest] < 0) d = -d;
     for (const double side : {-1.0, 1.0}) {
       const Vec3<S> towards = (-side * d).template cast<S>();
       const S away = S(2) * (mesh.upper() - mesh.lower()).norm();

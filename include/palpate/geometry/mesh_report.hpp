@@ -21,7 +21,7 @@ enum class MeshDefect : std::uint8_t {
   bad_index,                 ///< a triangle names a vertex that does not exist
   bad_vertex,                ///< a coordinate is NaN, infinite or above 1e6 m
   repeated_index,            ///< a triangle names a vertex twice
-  duplicate_vertex,          ///< two vertices at one place
+  duplicate_vertex,          ///< two vertices at one position
   zero_area,                 ///< height below the rounding of the coordinates
   unused_vertex,             ///< no triangle names it
   open_edge,                 ///< one triangle only: a hole

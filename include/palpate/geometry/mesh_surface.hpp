@@ -6,8 +6,8 @@
 #include <palpate/core/fixed_vector.hpp>
 #include <palpate/geometry/detail/crease_normals.hpp>
 #include <palpate/geometry/detail/distance_grid.hpp>
+#include <palpate/geometry/detail/near_batch.hpp>
 #include <palpate/geometry/detail/near_blend.hpp>
-#include <palpate/geometry/detail/near_lanes.hpp>
 #include <palpate/geometry/detail/shape_tools.hpp>
 #include <palpate/geometry/triangle_mesh.hpp>
 
@@ -109,12 +109,12 @@ class MeshSurface {
     return {d, normals_.patches == 1 ? patch_direction(x, near, d, seen) : direction(x, near, d)};
   }
 
-  /// The same for `lane_count` points; where they are close together, by one walk of the tree.
-  void penetration(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
-    PointLanes<S> points = x;
-    std::array<bool, lane_count> open;
+  /// The same of a batch; where they are close together, by one walk of the tree.
+  void penetration(const PointBatch<S>& x, PenetrationBatch<S>& in) const noexcept {
+    PointBatch<S> points = x;
+    std::array<bool, batch_size> open;
     Vec3<S> low = upper_, high = lower_;
-    for (std::size_t i = 0; i < lane_count; ++i) {
+    for (std::size_t i = 0; i < batch_size; ++i) {
       const Vec3<S> p(x.x[i], x.y[i], x.z[i]);
       open[i] = within(p);
       if (open[i]) low = low.cwiseMin(p), high = high.cwiseMax(p);
@@ -125,32 +125,31 @@ class MeshSurface {
     const S spread = (high - low).norm() / S(2);
     const auto bounds = grid_.at(middle);
     if (bounds.lower > spread) return;
-    for (std::size_t i = 0; i < lane_count; ++i)
+    for (std::size_t i = 0; i < batch_size; ++i)
       if (!open[i]) points.x[i] = middle.x(), points.y[i] = middle.y(), points.z[i] = middle.z();
-    const auto at_once = [&](const detail::NearLanes<S>& lanes) {
-      std::array<detail::LaneArray<S>, 3> mean;
+    const auto at_once = [&](const detail::NearBatch<S>& batch) {
+      std::array<std::array<S, batch_size>, 3> mean;
       if (normals_.patches == 1)
-        lanes.mean_direction(
+        batch.mean_direction(
             blend_,
             [this](std::uint32_t triangle, std::uint32_t corner) -> const Vec3<S>& {
               return normals_.normal[normals_.corner[3 * triangle + corner]];
             },
             mean);
-      for (std::size_t i = 0; i < lane_count; ++i) {
-        const Nearest near = lanes.nearest(i);
-        if (!open[i] || !(lanes.along(i, pseudonormal(near)) < S(0))) continue;
-        const auto k = static_cast<Eigen::Index>(i);
-        const S d = lanes.distance()[k];
-        in.set(i, {d, normals_.patches == 1 ? Vec3<S>(mean[0][k], mean[1][k], mean[2][k])
+      for (std::size_t i = 0; i < batch_size; ++i) {
+        const Nearest near = batch.nearest(i);
+        if (!open[i] || !(batch.along(i, pseudonormal(near)) < S(0))) continue;
+        const S d = batch.distance()[i];
+        in.set(i, {d, normals_.patches == 1 ? Vec3<S>(mean[0][i], mean[1][i], mean[2][i])
                                             : direction(Vec3<S>(x.x[i], x.y[i], x.z[i]), near, d)});
       }
     };
     if (blend_.shares(spread)) {
       // No point is farther from the mesh than the middle is and its own distance from there.
       const S far = std::sqrt(bvh_.on_triangle(middle, bounds.triangle).distance2) + spread;
-      if (detail::with_near_lanes(bvh_, blend_, points, middle, spread, far, at_once)) return;
+      if (detail::with_near_batch(bvh_, blend_, points, middle, spread, far, at_once)) return;
     }
-    for (std::size_t i = 0; i < lane_count; ++i)
+    for (std::size_t i = 0; i < batch_size; ++i)
       if (open[i]) in.set(i, penetration(Vec3<S>(x.x[i], x.y[i], x.z[i])));
   }
 
@@ -305,7 +304,7 @@ class MeshSurface {
             feet.push_back(here);
             return;
           }
-          if (i == feet.size()) {  // full: the farthest gives way
+          if (i == feet.size()) {  // full: the farthest is replaced
             i = 0;
             for (std::size_t j = 1; j < feet.size(); ++j)
               if (feet[j].distance2 > feet[i].distance2) i = j;

@@ -3,8 +3,8 @@
 
 /// @file  Any body's depth from samples on a grid: a few dozen instructions per point, whatever the body.
 
+#include <palpate/core/detail/simd_shuffle.hpp>
 #include <palpate/core/error.hpp>
-#include <palpate/core/float_vector.hpp>
 #include <palpate/geometry/concept.hpp>
 
 #include <algorithm>
@@ -24,11 +24,11 @@ concept SampledBody = HasClosest<B> && HasReach<B> && requires(const B& body) {
 /// Depth of a body from its signed distance d at the nodes of a grid, for scenes where the body's own
 /// penetration() is too slow: meshes, superellipsoids.
 ///
-/// | symbol | name      | unit | range                                                                       |
-/// |--------|-----------|------|-----------------------------------------------------------------------------|
-/// | w      | `spacing` | m    | > 0, no default; at most 50 million nodes over the body's box               |
+/// | symbol | name      | unit | range                                                         |
+/// |--------|-----------|------|---------------------------------------------------------------|
+/// | w      | `spacing` | m    | > 0, no default; at most 50 million nodes over the body's box |
 ///
-///     depth(x) = - sum_i B((x - x_i) / w) c_i,        c = f - (1/8) (dx^2 + dy^2 + dz^2) f,     f = min(d, 8 w)
+///     depth(x) = - sum_i B((x - x_i) / w) c_i,   c = f - (1/8) (dx^2 + dy^2 + dz^2) f, f = min(d, 8 w)
 ///
 /// B is the product of three quadratic B-splines, dx^2 the second difference. The field and its derivative
 /// are continuous, and `gradient` is the exact derivative of `depth`: unlike a shading normal the force has
@@ -88,37 +88,44 @@ class SampledSurface {
                              static_cast<S>(wx.sum(rows.along_z)))};
   }
 
-  /// The same for `lane_count` points.
-  void penetration(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
-    using Lanes = detail::LaneArray<S>;
-    using Offsets = detail::LaneArray<float>;
-    const std::array<Lanes, 3> u{(detail::lane_array(x.x) - origin_.x()) * per_w_,
-                                 (detail::lane_array(x.y) - origin_.y()) * per_w_,
-                                 (detail::lane_array(x.z) - origin_.z()) * per_w_};
-    const std::array<Lanes, 3> node{(u[0] + S(0.5L)).floor(), (u[1] + S(0.5L)).floor(),
-                                    (u[2] + S(0.5L)).floor()};
-    const Spline<Offsets> wx((u[0] - node[0]).template cast<float>()),
-        wy((u[1] - node[1]).template cast<float>()), wz((u[2] - node[2]).template cast<float>());
-    // Whole numbers below 2^53.
-    const detail::LaneArray<double> at = node[0].template cast<double>() +
-                                         static_cast<double>(row_) * node[1].template cast<double>() +
-                                         static_cast<double>(layer_) * node[2].template cast<double>();
-    std::array<Rows, lane_count> rows;
-    for (std::size_t i = 0; i < lane_count; ++i) {
-      const auto k = static_cast<Eigen::Index>(i);
-      rows[i] = Rows{};
-      if (!has_cell(Vec3<S>(u[0][k], u[1][k], u[2][k]))) continue;
-      const float* const here = &field_[static_cast<std::size_t>(at[k])];
-      if (*here > clear_) continue;
-      rows[i] = rows_around(here, wy.lane(k), wz.lane(k));
+  /// The same of a batch.
+  void penetration(const PointBatch<S>& x, PenetrationBatch<S>& in) const noexcept {
+    using V = detail::batch_simd<S>;
+    std::array<std::array<S, batch_size>, 3> u;  // from the first node, in units of w
+    std::array<std::array<float, batch_size>, 3> t;
+    std::array<double, batch_size> at;  // whole numbers below 2^53
+    for (std::size_t i = 0; i < batch_size; i += V::size()) {
+      const detail::SimdVec3<V> from_first = per_w_ * detail::load_from<V>(x, i, origin_);
+      const std::array<V, 3> from{from_first.x, from_first.y, from_first.z};
+      std::array<V, 3> node;
+      for (std::size_t k = 0; k < 3; ++k) {
+        node[k] = floor(from[k] + S(0.5L));
+        detail::store(&u[k][i], from[k]);
+        detail::store(&t[k][i], detail::simd_cast<float>(from[k] - node[k]));
+      }
+      detail::store(&at[i], detail::simd_cast<double>(node[0]) +
+                                static_cast<double>(row_) * detail::simd_cast<double>(node[1]) +
+                                static_cast<double>(layer_) * detail::simd_cast<double>(node[2]));
     }
-    for (std::size_t i = 0; i < lane_count; i += 4) {
-      const Spline<detail::Float4> w = wx.four(i);
+    const SplineBatch wx(t[0]), wy(t[1]), wz(t[2]);
+    std::array<Rows, batch_size> rows;
+    for (std::size_t i = 0; i < batch_size; ++i) {
+      rows[i] = Rows{};
+      if (!has_cell(Vec3<S>(u[0][i], u[1][i], u[2][i]))) continue;
+      const float* const here = &field_[static_cast<std::size_t>(at[i])];
+      if (*here > clear_) continue;
+      rows[i] = rows_around(here, wy.at(i), wz.at(i));
+    }
+    for (std::size_t i = 0; i < batch_size; i += Four::size()) {
+      const Spline<Four> w = wx.four(i);
       const auto value = columns(rows, i, &Rows::value);
-      put(i, detail::larger(-w.sum(value), detail::four(0.0f)), S(1), in.depth);
-      put(i, w.slope_sum(value), per_w_, in.gradient_x);
-      put(i, w.sum(columns(rows, i, &Rows::along_y)), per_w_, in.gradient_y);
-      put(i, w.sum(columns(rows, i, &Rows::along_z)), per_w_, in.gradient_z);
+      const auto put = [i](const Four& v, S factor, std::array<S, batch_size>& out) PALPATE_INLINE_LAMBDA {
+        detail::store(&out[i], detail::simd_cast<S>(v) * factor);
+      };
+      put((detail::max)(-w.sum(value), 0.0f), S(1), in.depth);
+      put(w.slope_sum(value), per_w_, in.gradient_x);
+      put(w.sum(columns(rows, i, &Rows::along_y)), per_w_, in.gradient_y);
+      put(w.sum(columns(rows, i, &Rows::along_z)), per_w_, in.gradient_z);
     }
   }
 
@@ -126,7 +133,7 @@ class SampledSurface {
   [[nodiscard]] bool separated(const Vec3<S>& c, S r) const noexcept {
     if (!is_finite(c) || !is_finite(r) || r < S(0)) return false;
     const Vec3<S> away = (body_.lower() - c).cwiseMax(c - body_.upper()).cwiseMax(S(0));
-    const S apart = r + S(1.63L) * w_;
+    const S apart = r + S(1.63L) * w_;  // 1.62 w and its rounding
     // One coordinate first, so that nothing overflows.
     if (away.maxCoeff() > apart || away.squaredNorm() > apart * apart) return true;
     std::array<std::size_t, 3> node;
@@ -144,9 +151,11 @@ class SampledSurface {
   [[nodiscard]] const B& body() const noexcept { return body_; }
 
  private:
+  using Four = detail::Simd4;
+
   // A coefficient is within 0.75 w of its sample, the nearest sample is within 0.87 w, and the field within
   // 1.62 w of d: a coefficient of more than this has no contact in its cell.
-  static constexpr S margin = S(3.25L);
+  static constexpr S margin = S(3.25L), far = S(8);  // of samples that do not count
 
   /// The three quadratic B-splines that are not 0 at an offset t in [-1/2, 1/2] from a node, and their
   /// derivatives.
@@ -159,20 +168,6 @@ class SampledSurface {
       value = {0.5f * a * a, 0.75f - t * t, 0.5f * b * b};
       slope = {-a, -2.0f * t, b};
     }
-    /// Of one or four of many.
-    [[nodiscard]] PALPATE_INLINE Spline<float> lane(Eigen::Index i) const noexcept {
-      Spline<float> w;
-      for (std::size_t k = 0; k < 3; ++k) w.value[k] = value[k][i], w.slope[k] = slope[k][i];
-      return w;
-    }
-    [[nodiscard]] PALPATE_INLINE Spline<detail::Float4> four(std::size_t i) const noexcept {
-      Spline<detail::Float4> w;
-      for (std::size_t k = 0; k < 3; ++k) {
-        w.value[k] = detail::load_vector<detail::Float4>(value[k].data() + i);
-        w.slope[k] = detail::load_vector<detail::Float4>(slope[k].data() + i);
-      }
-      return w;
-    }
     /// Over three nodes.
     template <class V>
     [[nodiscard]] PALPATE_INLINE T sum(const V& v) const noexcept {
@@ -184,19 +179,41 @@ class SampledSurface {
     }
   };
 
-  struct
-      Rows {  // sums over y and z of the nodes around a point, by nodes along x, of which the first three count
-    detail::Float4 value, along_y, along_z;  // field, and derivatives by offsets
+  /// The splines of a batch of offsets.
+  struct SplineBatch {
+    std::array<std::array<float, batch_size>, 3> value, slope;
+
+    PALPATE_INLINE explicit SplineBatch(const std::array<float, batch_size>& t) noexcept {
+      using V = detail::batch_simd<float>;
+      for (std::size_t i = 0; i < batch_size; i += V::size()) {
+        const Spline<V> w(V(&t[i]));
+        for (std::size_t k = 0; k < 3; ++k)
+          detail::store(&value[k][i], w.value[k]), detail::store(&slope[k][i], w.slope[k]);
+      }
+    }
+    [[nodiscard]] PALPATE_INLINE Spline<float> at(std::size_t i) const noexcept {
+      Spline<float> w;
+      for (std::size_t k = 0; k < 3; ++k) w.value[k] = value[k][i], w.slope[k] = slope[k][i];
+      return w;
+    }
+    [[nodiscard]] PALPATE_INLINE Spline<Four> four(std::size_t i) const noexcept {
+      Spline<Four> w;
+      for (std::size_t k = 0; k < 3; ++k) w.value[k] = Four(&value[k][i]), w.slope[k] = Four(&slope[k][i]);
+      return w;
+    }
+  };
+
+  /// Sums over y and z of the nodes around a point, by nodes along x, of which the first three count.
+  struct Rows {
+    Four value, along_y, along_z;  // field, and derivatives by offsets
   };
   [[nodiscard]] PALPATE_INLINE Rows rows_around(const float* node, const Spline<float>& wy,
                                                 const Spline<float>& wz) const noexcept {
     Rows rows{};
     const float* from = node - layer_ - row_ - 1;
     for (std::size_t k = 0; k < 3; ++k, from += layer_) {
-      const std::array<detail::Float4, 3> in{detail::load_vector<detail::Float4>(from),
-                                             detail::load_vector<detail::Float4>(from + row_),
-                                             detail::load_vector<detail::Float4>(from + 2 * row_)};
-      const detail::Float4 value = wy.value[0] * in[0] + wy.value[1] * in[1] + wy.value[2] * in[2];
+      const std::array<Four, 3> in{Four(from), Four(from + row_), Four(from + 2 * row_)};
+      const Four value = wy.value[0] * in[0] + wy.value[1] * in[1] + wy.value[2] * in[2];
       rows.value += wz.value[k] * value;
       rows.along_y += wz.value[k] * (wy.slope[0] * in[0] + wy.slope[1] * in[1] + wy.slope[2] * in[2]);
       rows.along_z += wz.slope[k] * value;
@@ -204,18 +221,11 @@ class SampledSurface {
     return rows;
   }
   /// A sum of four points by nodes instead of by points.
-  [[nodiscard]] PALPATE_INLINE static std::array<detail::Float4, 3> columns(
-      const std::array<Rows, lane_count>& rows, std::size_t i, detail::Float4 Rows::*of) noexcept {
-    detail::Float4 a = rows[i].*of, b = rows[i + 1].*of, c = rows[i + 2].*of, d = rows[i + 3].*of;
+  [[nodiscard]] PALPATE_INLINE static std::array<Four, 3> columns(const std::array<Rows, batch_size>& rows,
+                                                                  std::size_t i, Four Rows::*of) noexcept {
+    Four a = rows[i].*of, b = rows[i + 1].*of, c = rows[i + 2].*of, d = rows[i + 3].*of;
     detail::transpose(a, b, c, d);
     return {a, b, c};
-  }
-  PALPATE_INLINE static void put(std::size_t i, detail::Float4 v, S factor,
-                                 std::array<S, lane_count>& out) noexcept {
-    std::array<float, 4> four;
-    detail::store_vector(four.data(), v);
-    Eigen::Map<Eigen::Array<S, 4, 1>>(out.data() + i) =
-        Eigen::Map<const Eigen::Array<float, 4, 1>>(four.data()).template cast<S>() * factor;
   }
 
   /// Middle of a block of 4 x 4 x 4 nodes.
@@ -249,19 +259,19 @@ class SampledSurface {
 
   void sample() {
     const std::array<std::size_t, 3> n{4 * blocks_[0], 4 * blocks_[1], 4 * blocks_[2]};
-    std::vector<float> f(layer_ * n[2], static_cast<float>(S(8) * w_));
+    std::vector<float> f(layer_ * n[2], static_cast<float>(far * w_));
     for (std::size_t c = 0; c < blocks_[2]; ++c) {
       for (std::size_t b = 0; b < blocks_[1]; ++b) {
         for (std::size_t a = 0; a < blocks_[0]; ++a) {
           const S d = body_.closest(centre({a, b, c})).distance;
           block_.push_back(static_cast<float>(d));
           // The farthest node of a block is sqrt(3) 1.5 w = 2.6 w from its middle.
-          if (d > S(10.6L) * w_) continue;
+          if (d > (far + S(2.6L)) * w_) continue;
           for (std::size_t i = 0; i < 64; ++i) {
             const std::size_t x = 4 * a + i % 4, y = 4 * b + i / 4 % 4, z = 4 * c + i / 16;
             const Vec3<S> at =
                 origin_ + w_ * Vec3<S>(static_cast<S>(x), static_cast<S>(y), static_cast<S>(z));
-            f[index({x, y, z})] = static_cast<float>((std::min)(body_.closest(at).distance, S(8) * w_));
+            f[index({x, y, z})] = static_cast<float>((std::min)(body_.closest(at).distance, far * w_));
           }
         }
       }

@@ -60,21 +60,20 @@ class Sphere {
     return {p_.radius - length, r / length};
   }
 
-  /// The same for `lane_count` points.
-  PALPATE_FLATTEN void penetration(const PointLanes<S>& x, PenetrationLanes<S>& in) const noexcept {
-    using Lanes = detail::LaneArray<S>;
-    using detail::lane_array;
-    const Lanes rx = lane_array(x.x) - p_.centre.x(), ry = lane_array(x.y) - p_.centre.y(),
-                rz = lane_array(x.z) - p_.centre.z(), square = rx * rx + ry * ry + rz * rz;
-    const S smallest = (std::numeric_limits<S>::min)() / std::numeric_limits<S>::epsilon();
-    if (!is_finite(S(square.sum())) || !(S(square.minCoeff()) > smallest))
-      return detail::penetrate_one_by_one(*this, x, lane_count, in);
-    const Lanes length = square.sqrt(), depth = p_.radius - length;
-    const Lanes within = detail::one_if_positive<Lanes, S>(depth, p_.radius), outward = within / length;
-    lane_array(in.depth) = within * depth;
-    lane_array(in.gradient_x) = outward * rx;
-    lane_array(in.gradient_y) = outward * ry;
-    lane_array(in.gradient_z) = outward * rz;
+  /// The same of a batch.
+  void penetration(const PointBatch<S>& x, PenetrationBatch<S>& in) const noexcept {
+    using V = detail::batch_simd<S>;
+    constexpr S smallest = (std::numeric_limits<S>::min)() / std::numeric_limits<S>::epsilon();
+    V sum{}, least = (std::numeric_limits<S>::max)();
+    for (std::size_t i = 0; i < batch_size; i += V::size()) {
+      const detail::SimdVec3<V> r = detail::load_from<V>(x, i, p_.centre);
+      const V square = dot(r, r), length = sqrt(square), depth = p_.radius - length;
+      sum += square, least = (detail::min)(least, square);
+      const auto inside = depth > V{};
+      detail::store(in, i, select(inside, depth, V{}), select(inside, S(1) / length, V{}) * r);
+    }
+    if (!is_finite(reduce(sum)) || !(reduce_min(least) > smallest))
+      detail::penetrate_one_by_one(*this, x, in);
   }
 
   [[nodiscard]] bool inside(const Vec3<S>& x) const noexcept {
@@ -126,7 +125,7 @@ class Sphere {
 
   [[nodiscard]] S reach() const noexcept { return p_.radius; }
   [[nodiscard]] S volume() const noexcept {
-    return S(4.18879020478639098461685784437267051L) * p_.radius * p_.radius * p_.radius;
+    return detail::four_pi_thirds<S> * p_.radius * p_.radius * p_.radius;
   }
   [[nodiscard]] Vec3<S> lower() const noexcept { return p_.centre - Vec3<S>::Constant(p_.radius); }
   [[nodiscard]] Vec3<S> upper() const noexcept { return p_.centre + Vec3<S>::Constant(p_.radius); }

@@ -85,10 +85,10 @@ class Superellipsoid {
     return in;
   }
 
-  /// The same for N points. Chains of operations are long here: twice `lane_count` points take 0.87 of the
+  /// The same for N points. Chains of operations are long here: twice `batch_size` points take 0.87 of the
   /// time each.
   template <std::size_t N>
-  void penetration(const PointLanes<S, N>& x, PenetrationLanes<S, N>& in) const noexcept {
+  void penetration(const PointBatch<S, N>& x, PenetrationBatch<S, N>& in) const noexcept {
     near_surface<static_cast<int>(N)>(x.x.data(), x.y.data(), x.z.data(), in.depth.data(),
                                       in.gradient_x.data(), in.gradient_y.data(), in.gradient_z.data());
   }
@@ -178,7 +178,7 @@ class Superellipsoid {
     });
   }
 
-  /// Smaller of a_min, half of the smallest extent, and the smallest radius of curvature, found at set-up on
+  /// Least of a_min, half of the least extent, and the smallest radius of curvature, found at set-up on
   /// a grid of normals, refined, and lowered by 1 %.
   [[nodiscard]] S reach() const noexcept { return reach_; }
   /// 2 a1 a2 a3 e1 e2 B(e1/2 + 1, e1) B(e2/2, e2/2), B the beta function [barr1981].
@@ -223,39 +223,34 @@ class Superellipsoid {
   template <int N>
   PALPATE_FLATTEN void near_surface(const S* x, const S* y, const S* z, S* depth, S* nx, S* ny,
                                     S* nz) const noexcept {
-    using V = std::conditional_t<N == 1, S, detail::LaneRegister<S>>;
-    using detail::all_of, detail::all_true, detail::load_vector, detail::negated, detail::store_vector;
-    using Mask = detail::MaskOf<V>;
-    constexpr std::size_t lanes = sizeof(V) / sizeof(S);
+    using V = std::conditional_t<N == 1, S, detail::native_simd<S>>;
+    using detail::abs, detail::load, detail::select, detail::store;
     const S per_unit = S(1) / unit_;
     const std::array<const S*, 3> at{x, y, z};
     const std::array<S*, 3> n{nx, ny, nz};
     const auto from_centre = [&](std::size_t axis, std::size_t i) -> V {
-      return load_vector<V>(at[axis] + i) - p_.centre[static_cast<Eigen::Index>(axis)];
+      return load<V>(at[axis] + i) - p_.centre[static_cast<Eigen::Index>(axis)];
     };
     typename detail::SuperellipsoidNear<S>::template Axes<N> r;
-    for (std::size_t i = 0; i < N; i += lanes)
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        store_vector(&r[axis][i], V(detail::absolute(from_centre(axis, i)) * per_unit));
+    for (std::size_t i = 0; i < N; i += detail::size_of<V>)
+      for (std::size_t axis = 0; axis < 3; ++axis) store(&r[axis][i], abs(from_centre(axis, i)) * per_unit);
     typename detail::SuperellipsoidNear<S>::template Result<N> near;
     near_.template solve<N>(r, near);
     std::array<S, static_cast<std::size_t>(N)> left;
     bool any_left = false;
-    for (std::size_t i = 0; i < N; i += lanes) {
-      const V below = load_vector<V>(&near.depth[i]) * unit_, zero{};
-      const Mask is_near = load_vector<V>(&near.near[i]) > zero,
-                 settled = all_true<Mask>(is_near, load_vector<V>(&near.settled[i]) > zero,
-                                          below < all_of<V>(reach_)),
-                 inside = all_true<Mask>(settled, below > zero),
-                 other = all_true<Mask>(is_near, negated(settled));
-      store_vector(depth + i, V(inside ? below : zero));
+    for (std::size_t i = 0; i < N; i += detail::size_of<V>) {
+      const V below = load<V>(&near.depth[i]) * unit_, zero{};
+      const detail::MaskOf<V> is_near = load<V>(&near.near[i]) > zero,
+                              settled = is_near && load<V>(&near.settled[i]) > zero && below < reach_,
+                              inside = settled && below > zero, other = is_near && !settled;
+      store(depth + i, select(inside, below, zero));
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        const V normal = load_vector<V>(&near.normal[axis][i]);
-        const V turned = from_centre(axis, i) < zero ? -normal : normal;
-        store_vector(n[axis] + i, V(inside ? turned : zero));
+        const V normal = load<V>(&near.normal[axis][i]);
+        const V turned = select(from_centre(axis, i) < zero, -normal, normal);
+        store(n[axis] + i, select(inside, turned, zero));
       }
-      store_vector(&left[i], V(other ? all_of<V>(S(1)) : zero));
-      any_left |= detail::any<S>(other);
+      store(&left[i], select(other, V(S(1)), zero));
+      any_left |= detail::any_of(other);
     }
     if (!any_left) return;
     for (std::size_t i = 0; i < N; ++i) {

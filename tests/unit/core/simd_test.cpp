@@ -79,6 +79,7 @@ TEST_CASE_TEMPLATE("every entry of a Simd is what the formula gives for a number
     check(x, y, V((min)(T(0), x)), [](T a, T) { return std::min(a, T(0)); });
     check(x, y, V(clamp(x, T(-0.25), T(0.5))), [](T a, T) { return std::clamp(a, T(-0.25), T(0.5)); });
     check(x, y, V(abs(x)), [](T a, T) { return std::abs(a); });
+    check(x, y, V(floor(x)), [](T a, T) { return std::floor(a); });
     check(above, y, V(sqrt(above)), [](T a, T) { return std::sqrt(a); });  // correctly rounded
 
     check_mask(x, y, x < y, [](T a, T b) { return a < b; });

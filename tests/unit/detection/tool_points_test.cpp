@@ -178,7 +178,7 @@ TEST_CASE_TEMPLATE("tool points: every ball holds its points and its children's 
     for (std::uint32_t i = nodes[n].begin; i < nodes[n].end; ++i)
       CHECK((tool.point(i) - nodes[n].centre).norm() <= nodes[n].radius);
     if (nodes[n].skip == n + 1) {
-      CHECK(nodes[n].end - nodes[n].begin <= lane_count);
+      CHECK(nodes[n].end - nodes[n].begin <= batch_size);
     } else {
       const auto &left = nodes[n + 1], &right = nodes[left.skip];
       CHECK(left.begin == nodes[n].begin);

@@ -231,6 +231,6 @@ TEST_CASE("bvh: refusals name what, where and the value") {
   CHECK(refusal({vertices, {{0, 1, 2}, {0, 1, 3}}}) ==
         "TriangleBvh: vertex does not exist, at triangle 1, got 3");
   CHECK(refusal({{V(0, 0, 0), V(1, 2e6, 0), V(0, 1, 0)}, {{0, 1, 2}}}) ==
-        "TriangleBvh: place must be finite and below 1e6 m, at vertex 1");
+        "TriangleBvh: position must be finite and below 1e6 m, at vertex 1");
 }
 #endif

@@ -40,8 +40,8 @@ DeformedSurface<Sphere<double>> raised(double h) {
 }
 
 static_assert(ContactSurface<DeformedSurface<Sphere<double>>>);
-static_assert(HasPenetrationLanes<DeformedSurface<Sphere<double>>> &&
-              HasPenetrationLanes<DeformedSurface<MeshSurface<float>>>);
+static_assert(HasPenetrationBatch<DeformedSurface<Sphere<double>>> &&
+              HasPenetrationBatch<DeformedSurface<MeshSurface<float>>>);
 static_assert(ContactSurface<DeformedSurface<MeshSurface<float>>>);
 
 }  // namespace
@@ -145,16 +145,16 @@ TEST_CASE("deformed surface: many points at once are as each of them") {
       const V middle =
           V(uniform(random), 1, uniform(random)).normalized() * (radius + 0.003 * uniform(random));
       const double size = k % 3 == 0 ? 0.02 : 0.0005;
-      PointLanes<double> x;
-      for (std::size_t i = 0; i < lane_count; ++i) {
+      PointBatch<double> x;
+      for (std::size_t i = 0; i < batch_size; ++i) {
         V p = middle + size * V(uniform(random), uniform(random), uniform(random));
         if (k % 5 == 0 && i == 0) p = body.tree().vertices()[static_cast<std::size_t>(k)];
         if (k % 50 == 0 && i == 7) p.y() = std::numeric_limits<double>::quiet_NaN();
         x.x[i] = p.x(), x.y[i] = p.y(), x.z[i] = p.z();
       }
-      PenetrationLanes<double> in;
+      PenetrationBatch<double> in;
       body.penetration(x, in);
-      for (std::size_t i = 0; i < lane_count; ++i) {
+      for (std::size_t i = 0; i < batch_size; ++i) {
         const auto one = body.penetration(V(x.x[i], x.y[i], x.z[i]));
         // Sums over the same triangles in another order; where a place is on a triangle's edge, either may
         // count.
@@ -171,8 +171,8 @@ TEST_CASE("deformed surface: many points at once are as each of them") {
   compare(raised(0.004));
   compare(on_mesh);
   const DeformedSurface<Sphere<double>> still(ball, skin);
-  PointLanes<double> x{};
-  PenetrationLanes<double> in;
+  PointBatch<double> x{};
+  PenetrationBatch<double> in;
   x.y.fill(radius - 0.001);
   still.penetration(x, in);
   CHECK_RELATIVE(in.depth[3], 0.001, 1e-12);

@@ -228,17 +228,17 @@ TEST_CASE_TEMPLATE("many points at once are the same as one by one, from outside
                               Vec3<S>(S(0.02), S(0.02), S(0.02)), Vec3<S>(S(1), S(0.02), S(0.001))}) {
     const Ellipsoid<S> body({.axes = axes, .centre = Vec3<S>(S(0.01), S(-0.02), S(0.005))});
     for (int k = 0; k < 500; ++k) {
-      PointLanes<S> x;
+      PointBatch<S> x;
       const S shrink = S(1) - S(std::pow(10.0, logarithm(random)));  // near the surface, deep, and outside
-      for (std::size_t i = 0; i < lane_count; ++i) {
+      for (std::size_t i = 0; i < batch_size; ++i) {
         const Vec3<S> q = Vec3<S>(S(unit(random)), S(unit(random)), S(unit(random))).normalized();
         const Vec3<S> p = body.params().centre + axes.cwiseProduct(q) * (i == 7 ? S(1.5) : shrink);
         x.x[i] = p.x(), x.y[i] = p.y(), x.z[i] = p.z();
       }
       if (k % 100 == 0) x.y[3] = std::numeric_limits<S>::quiet_NaN();
-      PenetrationLanes<S> in;
+      PenetrationBatch<S> in;
       body.penetration(x, in);
-      for (std::size_t i = 0; i < lane_count; ++i) {
+      for (std::size_t i = 0; i < batch_size; ++i) {
         const Penetration<S> one = body.penetration(Vec3<S>(x.x[i], x.y[i], x.z[i]));
         // The same formula, in which a compiler may contract products and sums in another way: a few ulp.
         const S ulps = S(16) * std::numeric_limits<S>::epsilon() * axes.maxCoeff();

@@ -225,8 +225,8 @@ TEST_CASE_TEMPLATE("mesh surface: many points at once are as one by one, close t
     for (int k = 0; k < 200; ++k) {
       const Vec3<S> about = data.vertices[random() % data.vertices.size()];
       const S spread = size * (k % 4 == 0 ? S(1) : k % 4 == 1 ? S(0.1L) : S(0.01L));
-      PointLanes<S> x;
-      for (std::size_t i = 0; i < lane_count; ++i) {
+      PointBatch<S> x;
+      for (std::size_t i = 0; i < batch_size; ++i) {
         x.x[i] = about.x() + spread * uniform(random);
         x.y[i] = about.y() + spread * uniform(random);
         x.z[i] = about.z() + spread * uniform(random);
@@ -234,9 +234,9 @@ TEST_CASE_TEMPLATE("mesh surface: many points at once are as one by one, close t
       if (k % 5 == 0) x.y[3] = std::numeric_limits<S>::quiet_NaN();
       if (k % 7 == 0) x.z[8] = std::numeric_limits<S>::infinity();
       x.x[15] = x.x[14], x.y[15] = x.y[14], x.z[15] = x.z[14];
-      PenetrationLanes<S> in;
+      PenetrationBatch<S> in;
       body.penetration(x, in);
-      for (std::size_t i = 0; i < lane_count; ++i) {
+      for (std::size_t i = 0; i < batch_size; ++i) {
         const Penetration<S> one = body.penetration(Vec3<S>(x.x[i], x.y[i], x.z[i]));
         // The same formulas in another order.
         CHECK_ABSOLUTE(in.depth[i], one.depth, test::ulps<S>(8) * static_cast<long double>(size));
@@ -262,8 +262,8 @@ TEST_CASE("mesh surface: no heap in a query, and the same bits for the same inpu
           0.04 * random_direction<double>(random) * static_cast<double>(random() % 1000) / 1000;
       const auto p = b->penetration(x), q = b->penetration(x);
       differ += p.depth != q.depth || p.gradient != q.gradient;
-      PenetrationLanes<double> in;
-      PointLanes<double> lanes;
+      PenetrationBatch<double> in;
+      PointBatch<double> lanes;
       lanes.x.fill(x.x()), lanes.y.fill(x.y()), lanes.z.fill(x.z());
       b->penetration(lanes, in);
       (void)b->closest(x);

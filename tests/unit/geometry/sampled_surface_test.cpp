@@ -20,7 +20,7 @@ namespace {
 
 using V = Vec3<double>;
 static_assert(ContactSurface<SampledSurface<MeshSurface<float>>>);
-static_assert(HasPenetrationLanes<SampledSurface<MeshSurface<float>>>);
+static_assert(HasPenetrationBatch<SampledSurface<MeshSurface<float>>>);
 static_assert(ContactSurface<SampledSurface<Ellipsoid<double>>>);
 static_assert(ContactSurface<SampledSurface<Superellipsoid<double>>>);
 
@@ -109,8 +109,8 @@ TEST_CASE_TEMPLATE("sampled surface: many points at once are as one by one", S, 
   for (int k = 0; k < 500; ++k) {
     // Within the body, about its box, and past the grid's rim.
     const S reach = k % 3 == 0 ? S(0.8) : k % 3 == 1 ? S(1.05) : S(2);
-    PointLanes<S> x;
-    for (std::size_t i = 0; i < lane_count; ++i) {
+    PointBatch<S> x;
+    for (std::size_t i = 0; i < batch_size; ++i) {
       x.x[i] = middle.x() + reach * half.x() * uniform(random);
       x.y[i] = middle.y() + reach * half.y() * uniform(random);
       x.z[i] = middle.z() + reach * half.z() * uniform(random);
@@ -118,9 +118,9 @@ TEST_CASE_TEMPLATE("sampled surface: many points at once are as one by one", S, 
     x.y[3] = std::numeric_limits<S>::quiet_NaN();
     x.z[8] = std::numeric_limits<S>::infinity();
     x.x[11] = (std::numeric_limits<S>::max)();
-    PenetrationLanes<S> in;
+    PenetrationBatch<S> in;
     body.penetration(x, in);
-    for (std::size_t i = 0; i < lane_count; ++i) {
+    for (std::size_t i = 0; i < batch_size; ++i) {
       const Penetration<S> one = body.penetration(Vec3<S>(x.x[i], x.y[i], x.z[i]));
       // Sums of 27 samples in float, and in S = float a place rounded to a few parts in 1e5 of a spacing.
       const long double rounding = test::ulps<float>(64) * static_cast<long double>(half.maxCoeff());
@@ -156,7 +156,8 @@ TEST_CASE("sampled surface: separation never hides a contact and decides where i
       CHECK(!(body.penetration(x + r * unit(random) * random_direction(random)).depth > 0));
     } else if (mesh.separated(x, r + 13.2e-3) && (x.array() > mesh.lower().array()).all() &&
                (x.array() < mesh.upper().array()).all()) {
-      ++near;  // a block's middle is within 3.5 spacings, which counts twice, and the margin is 1.63: 8.7 spacings
+      // A block's middle is within 3.5 spacings, which counts twice, and the margin is 1.63: 8.7 spacings.
+      ++near;
     }
   }
   CHECK(apart > 5000);

@@ -83,8 +83,8 @@ TEST_CASE_TEMPLATE("superellipsoid: penetration of many points is that of each, 
     const Vec3<S> a(S(0.06), S(0.04), k % 2 == 0 ? S(0.04) : S(0.01)), m(S(0.01), S(-0.02), S(0.03));
     const S e1 = k % 5 == 0 ? S(1) : S(exponent(random)), e2 = k % 7 == 0 ? S(0.1) : S(exponent(random));
     const Superellipsoid<S> body({.axes = a, .e1 = e1, .e2 = e2, .centre = m});
-    PointLanes<S> x;
-    for (std::size_t i = 0; i < lane_count; ++i) {
+    PointBatch<S> x;
+    for (std::size_t i = 0; i < batch_size; ++i) {
       Vec3<S> r = a.cwiseProduct(Vec3<S>(S(uniform(random)), S(uniform(random)), S(uniform(random))));
       if (i % 4 == 1) r[static_cast<int>(i) % 3] = S(0);     // plane of symmetry
       if (i == 2) r = Vec3<S>(S(0), S(0), S(0.99) * a.z());  // next to the end of z, where powers underflow
@@ -95,9 +95,9 @@ TEST_CASE_TEMPLATE("superellipsoid: penetration of many points is that of each, 
     x.y[5] = std::numeric_limits<S>::quiet_NaN();
     x.z[9] = std::numeric_limits<S>::infinity();
     x.x[10] = (std::numeric_limits<S>::max)();
-    PenetrationLanes<S> in;
+    PenetrationBatch<S> in;
     body.penetration(x, in);
-    for (std::size_t i = 0; i < lane_count; ++i) {
+    for (std::size_t i = 0; i < batch_size; ++i) {
       const Vec3<S> at(x.x[i], x.y[i], x.z[i]), n(in.gradient_x[i], in.gradient_y[i], in.gradient_z[i]);
       const Penetration<S> one = body.penetration(at);
       const long double rounding = test::ulps<S>(8) * 0.06L;

@@ -55,8 +55,8 @@ struct PointByPoint {
   bool separated(const V& c, double r) const noexcept { return body.separated(c, r); }
   double reach() const noexcept { return body.reach(); }
 };
-static_assert(HasPenetrationLanes<Superellipsoid<double>, 2 * lane_count> &&
-              !HasPenetrationLanes<PointByPoint>);
+static_assert(HasPenetrationBatch<Superellipsoid<double>, 2 * batch_size> &&
+              !HasPenetrationBatch<PointByPoint>);
 
 }  // namespace
 

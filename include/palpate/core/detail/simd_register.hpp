@@ -8,11 +8,13 @@
 
 #if defined(__AVX__)
 #include <immintrin.h>
+#elif defined(__SSE4_1__)
+#include <smmintrin.h>
 #elif defined(__SSE2__)
 #include <emmintrin.h>
-#else
-#include <Eigen/Core>
 #endif
+
+#include <Eigen/Core>
 
 #include <algorithm>
 #include <array>
@@ -22,6 +24,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <type_traits>
 #include <utility>
 
@@ -160,15 +163,55 @@ template <class V>
   }
 }
 
+/// The whole number at or below a. Without an instruction for it: of |a| < 2^22, 2^51.
+template <class V>
+[[nodiscard]] PALPATE_INLINE V register_floor(const V& a) noexcept {
+  using T = RegisterEntry<V>;
+  if constexpr (std::is_arithmetic_v<V>) {
+    return std::floor(a);
+  } else {
+#if defined(__AVX512F__)
+    if constexpr (sizeof(V) == 64 && std::same_as<T, float>)
+      return _mm512_maskz_roundscale_ps(0xffff, a, _MM_FROUND_TO_NEG_INF);
+    if constexpr (sizeof(V) == 64 && std::same_as<T, double>)
+      return _mm512_maskz_roundscale_pd(0xff, a, _MM_FROUND_TO_NEG_INF);
+#endif
+#if defined(__AVX__)
+    if constexpr (sizeof(V) == 32 && std::same_as<T, float>) return _mm256_floor_ps(a);
+    if constexpr (sizeof(V) == 32 && std::same_as<T, double>) return _mm256_floor_pd(a);
+#endif
+#if defined(__SSE4_1__)
+    if constexpr (sizeof(V) == 16 && std::same_as<T, float>) return _mm_floor_ps(a);
+    if constexpr (sizeof(V) == 16 && std::same_as<T, double>) return _mm_floor_pd(a);
+#endif
+    // Near 1.5 * 2^23 floats are whole numbers; 2^52 of double.
+    const V shift =
+        broadcast<V>(T(3) * static_cast<T>(std::uint64_t(1) << (std::numeric_limits<T>::digits - 2)));
+    V shifted = a + shift;
+    EIGEN_OPTIMIZATION_BARRIER(shifted)
+    V nearest = shifted - shift;
+    EIGEN_OPTIMIZATION_BARRIER(nearest)
+    return nearest - (nearest > a ? broadcast<V>(T(1)) : V{});
+  }
+}
+
 /// Of a mask: is an entry true?
 template <class M>
 [[nodiscard]] PALPATE_INLINE bool register_any(const M& mask) noexcept {
   if constexpr (std::same_as<M, bool>) {
     return mask;
 #if defined(__AVX512F__)
-  } else if constexpr (sizeof mask == sizeof(__m512i)) {
+  } else if constexpr (sizeof mask == 64) {
     const auto bits = std::bit_cast<__m512i>(mask);
     return _mm512_test_epi64_mask(bits, bits) != 0;
+#endif
+#if defined(__AVX__)
+  } else if constexpr (sizeof mask == 32) {
+    return _mm256_movemask_ps(std::bit_cast<__m256>(mask)) != 0;
+#endif
+#if defined(__SSE2__)
+  } else if constexpr (sizeof mask == 16) {
+    return _mm_movemask_ps(std::bit_cast<__m128>(mask)) != 0;
 #endif
   } else {
     std::array<std::uint64_t, sizeof(M) / sizeof(std::uint64_t)> words;

@@ -4,7 +4,7 @@
 /// @file A node of a tree of boxes, and how the tree is built: surface area heuristic over bins (set-up
 /// only).
 
-#include <palpate/core/float_vector.hpp>
+#include <palpate/core/simd.hpp>
 #include <palpate/core/vector.hpp>
 
 #include <algorithm>
@@ -39,15 +39,15 @@ struct BvhNode {
 
   /// Squared distances from x to all eight boxes.
   void distances(const std::array<float, 3>& x, std::array<float, width>& d2) const noexcept {
-    for (std::size_t from = 0; from < width; from += 4) {
-      Float4 sum{};
+    using V = Simd<float, 4>;
+    for (std::size_t from = 0; from < width; from += V::size()) {
+      V sum{};
       for (std::size_t k = 0; k < 3; ++k) {
-        const Float4 here = four(x[k]), away = larger(larger(load_vector<Float4>(&low[k][from]) - here,
-                                                             here - load_vector<Float4>(&high[k][from])),
-                                                      Float4{});
+        const V here = x[k];
+        const V away = (max)((max)(load<V>(&low[k][from]) - here, here - load<V>(&high[k][from])), 0.0f);
         sum += away * away;
       }
-      store_vector(&d2[from], sum);
+      store(&d2[from], sum);
     }
   }
 };

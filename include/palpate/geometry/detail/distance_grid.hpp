@@ -12,9 +12,9 @@
 namespace palpate::detail {
 
 /// Lower bound of |d| with the sign of d, d the signed distance, at the centre c of each cell of a box, and a
-/// triangle near it. Distance changes by at most as much as the place does, so |d(x) - d(c)| <= |x - c|: one
-/// look-up tells inside from outside away from the surface, and gives a search near it a triangle to start
-/// from.
+/// triangle near it. Distance changes by at most as much as the position does, so |d(x) - d(c)| <= |x - c|:
+/// one look-up tells inside from outside away from the surface, and gives a search near it a triangle to
+/// start from.
 template <Real S>
 class DistanceGrid {
  public:
@@ -64,7 +64,7 @@ class DistanceGrid {
         }
       }
     }
-    // Rounding of the float and of the place.
+    // Rounding of the float and of the position.
     guard_ = S(8) * S(std::numeric_limits<float>::epsilon()) * (extent.norm() + low.norm());
   }
 

@@ -88,50 +88,47 @@ template <Real S, std::size_t N>
 }
 
 namespace detail {
-/// 1 for points below all faces, 0 for the others, whose depths it makes > 0. Depths are differences of
-/// numbers >= `size`.
-template <class V, Real S, std::size_t N>
-[[nodiscard]] PALPATE_INLINE V positive_faces(std::array<V, N>& depths, S size) noexcept {
-  V least = depths[0];
-  for (std::size_t j = 1; j < N; ++j) least = least.min(depths[j]);
-  for (V& face : depths) face = face.max(std::numeric_limits<S>::epsilon() / S(4) * size);
-  return one_if_positive<V, S>(least, size);
-}
-
-/// The blend for several points at once; V: an array of lanes. Faces that do not count take part where they
-/// change nothing, at 2 u m = 1; weights are 0 there by themselves.
+/// The blend of several points at once; the mask is true for those below all faces, and the others have some
+/// blend. Depths are differences of numbers >= `size`. Faces that do not count take part where they change
+/// nothing, at 2 u m = 1; weights are 0 there by themselves.
 template <class V, std::size_t N>
-PALPATE_INLINE void edge_blend(const std::array<V, N>& depths, V& depth, std::array<V, N>& weight) noexcept {
-  using S = typename V::Scalar;
-  depth = depths[0];
-  for (std::size_t j = 1; j < N; ++j) depth = depth.min(depths[j]);
+PALPATE_INLINE MaskOf<V> edge_blend(std::array<V, N> depths, ValueOf<V> size, V& depth,
+                                    std::array<V, N>& weight) noexcept {
+  using S = ValueOf<V>;
+  V least = depths[0];
+  for (std::size_t j = 1; j < N; ++j) least = (min)(least, depths[j]);
+  const auto below = least > V{};
+  const S tiny = std::numeric_limits<S>::epsilon() / S(4) * size;  // > 0 and below any depth that counts
+  for (V& face : depths) face = (max)(face, tiny);
+  depth = (max)(least, tiny);
   std::array<V, N> m, sorted;
-  for (std::size_t j = 0; j < N; ++j) {  // into `sorted`, largest first
+  for (std::size_t j = 0; j < N; ++j) {  // into `sorted`, greatest first
     m[j] = depth / depths[j];
     V next = m[j];
     for (std::size_t k = 0; k < j; ++k) {
-      const V larger = sorted[k].max(next);
-      next = sorted[k].min(next);
-      sorted[k] = larger;
+      const V greater = (max)(sorted[k], next);
+      next = (min)(sorted[k], next);
+      sorted[k] = greater;
     }
     sorted[j] = next;
   }
-  V u = V::Ones(), sum = u, squares = u;
-  for (std::size_t k = 1; k < N && sorted[k].maxCoeff() > S(0.5); ++k) {
-    const V next = sorted[k].max(S(0.5) / u);
+  V u = S(1), sum = u, squares = u;
+  for (std::size_t k = 1; k < N && reduce_max(sorted[k]) > S(0.5); ++k) {
+    const V next = (max)(sorted[k], S(0.5) / u);
     sum += next;
     squares += next * next;
-    u = (sum + (sum * sum - static_cast<S>(k) * squares).sqrt()) / (S(2) * squares);
+    u = (sum + sqrt(sum * sum - static_cast<S>(k) * squares)) / (S(2) * squares);
   }
-  V total = V::Zero();
+  V total{};
   for (std::size_t j = 0; j < N; ++j) {
-    const V t = u * m[j], slope_t = (S(2) * t - S(1)).max(S(0)) * t;
+    const V t = u * m[j], slope_t = (max)(S(2) * t - S(1), S(0)) * t;
     weight[j] = slope_t * t;
     total += slope_t;
   }
-  total = total.inverse();
+  total = S(1) / total;
   for (std::size_t j = 0; j < N; ++j) weight[j] *= total;
   depth *= u;
+  return below;
 }
 }  // namespace detail
 

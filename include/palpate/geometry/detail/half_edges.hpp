@@ -16,7 +16,7 @@ namespace palpate::detail {
 using Triangle = std::array<std::uint32_t, 3>;
 
 struct HalfEdge {
-  std::uint64_t edge;  // smaller vertex, then larger
+  std::uint64_t edge;  // lower vertex number, then the higher
   std::uint32_t id;    // 3 t + k
 
   [[nodiscard]] std::uint32_t low() const noexcept { return static_cast<std::uint32_t>(edge >> 32); }

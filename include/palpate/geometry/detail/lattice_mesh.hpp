@@ -27,7 +27,7 @@ inline void require_vertices(std::size_t vertices, const char* where) {
   if (vertices > 1000000000u) fail(where, "mesh takes at most 1e9 vertices", static_cast<double>(vertices));
 }
 
-/// Largest equal division with at most `vertices` vertices.
+/// Finest equal division with at most `vertices` vertices.
 [[nodiscard]] inline Cells equal_cells(std::size_t vertices) noexcept {
   std::size_t n = 1;
   while (6 * (n + 1) * (n + 1) + 2 <= vertices) ++n;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  The closed parts of a triangle mesh, and whether each is turned the right way. Set-up only.
+/// @file  The closed parts of a triangle mesh, and whether each is oriented outwards. Set-up only.
 
 #include <palpate/geometry/concept.hpp>
 #include <palpate/geometry/detail/half_edges.hpp>

@@ -36,7 +36,7 @@ class NearBlend {
   explicit NearBlend(S edge) noexcept : edge_(edge) {}
 
   /// Are points within `spread` [m] of another so close together that their triangles are mostly the same?
-  /// Farther apart they have too many around them for one walk of the tree.
+  /// Farther apart than about an edge and a half they have too many around them for one walk of the tree.
   [[nodiscard]] bool shares(S spread) const noexcept { return spread <= S(1.5L) * edge_; }
 
   /// ((1 + e) d)^2: what a search must visit.
@@ -47,9 +47,10 @@ class NearBlend {
   }
 
   /// (1 + e) d of many.
-  template <class Lanes>
-  [[nodiscard]] Lanes radii(const Lanes& d) const noexcept {
-    return (S(1) + (edge_ / S(4) / d.max((std::numeric_limits<S>::min)())).min(S(0.5L)).square()) * d;
+  template <SimdOrReal V>
+  [[nodiscard]] PALPATE_INLINE V radii(const V& d) const noexcept {
+    const V root = (min)(edge_ / S(4) / (max)(d, (std::numeric_limits<S>::min)()), S(0.5L));
+    return (S(1) + root * root) * d;
   }
 
   /// The closest point of the mesh, and in `seen` what the mean needs.
@@ -89,7 +90,7 @@ class NearBlend {
 /// Edge of the equilateral triangle of mean area [m].
 template <Real S>
 [[nodiscard]] inline S mean_edge(S area, std::size_t triangles) noexcept {
-  return std::sqrt(area * S(2.3094L) / static_cast<S>(triangles));
+  return std::sqrt(area * S(2.3094L) / static_cast<S>(triangles));  // 4 / sqrt(3)
 }
 
 }  // namespace palpate::detail

@@ -3,6 +3,7 @@
 
 /// @file  Triangles around several query points, found by one walk of the tree.
 
+#include <palpate/core/simd.hpp>
 #include <palpate/geometry/bvh.hpp>
 
 namespace palpate::detail {
@@ -42,23 +43,22 @@ class NearTriangles {
   /// Calls visit(triangle) for the others whose box is near one of many points: within its `limit` (squared,
   /// from Cull). Coordinates as in Cull. Precondition: complete().
   template <class Visit>
-  void for_each_near(const std::array<std::array<float, lane_count>, 3>& x,
-                     const std::array<float, lane_count>& limit, const Visit& visit) const noexcept {
+  void for_each_near(const std::array<std::array<float, batch_size>, 3>& x,
+                     const std::array<float, batch_size>& limit, const Visit& visit) const noexcept {
+    using V = simd_at_most<float, static_cast<int>(batch_size)>;
     for (std::size_t t = 0; t < count_; ++t) {
       if (t == nearest_) continue;
       const Box& box = box_[t];
-      Float4 least = four((std::numeric_limits<float>::max)());
-      for (std::size_t i = 0; i < lane_count; i += entries<WideRegister>) {
-        WideRegister d2 = -load_vector<WideRegister>(&limit[i]);
+      V least = (std::numeric_limits<float>::max)();
+      for (std::size_t i = 0; i < batch_size; i += V::size()) {
+        V d2 = -load<V>(&limit[i]);
         for (std::size_t k = 0; k < 3; ++k) {
-          const WideRegister at = load_vector<WideRegister>(&x[k][i]), below = box.low[k] - at,
-                             above = at - box.high[k], away = below > above ? below : above;
-          const WideRegister out = away > 0.0f ? away : WideRegister{};
-          d2 += out * out;
+          const V at = load<V>(&x[k][i]), away = (max)((max)(box.low[k] - at, at - box.high[k]), 0.0f);
+          d2 += away * away;
         }
-        take_least(least, d2);
+        least = (min)(d2, least);
       }
-      if (least_of(least) <= 0.0f) visit(box.triangle);
+      if (reduce_min(least) <= 0.0f) visit(box.triangle);
     }
   }
 

@@ -9,8 +9,12 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace palpate::detail {
+
+template <Real S>
+inline constexpr S four_pi_thirds = static_cast<S>(4 * std::numbers::pi_v<long double> / 3);
 
 /// Sizes from 1e-6 m to 1e6 m: their squares and the ratios below are safe in float.
 template <Real S>
@@ -27,7 +31,7 @@ inline void require_centre(const Vec3<S>& centre, const char* where) {
   }
 }
 
-/// Largest to smallest half size at most `limit` (and a rounding).
+/// The ratio of half sizes is at most `limit` (and a rounding).
 template <Real S>
 inline void require_ratio(const Vec3<S>& half, S limit, const char* where, const char* rule) {
   const S ratio = half.maxCoeff() / half.minCoeff();
@@ -107,7 +111,7 @@ template <Real S>
   return slab;
 }
 
-/// Largest entry of |d| when the ray can be followed; 0 when it is zero or anything is not finite.
+/// Greatest entry of |d| when the ray can be followed; 0 when it is zero or anything is not finite.
 template <Real S>
 [[nodiscard]] inline S ray_scale(const Vec3<S>& origin, const Vec3<S>& d) noexcept {
   if (!is_finite(origin) || !is_finite(d)) return S(0);

@@ -3,8 +3,7 @@
 
 /// @file  Newton's method for the closest point of a superellipsoid, many at once.
 
-#include <palpate/core/lane_power.hpp>
-#include <palpate/core/lane_register.hpp>
+#include <palpate/core/simd_math.hpp>
 #include <palpate/core/vector.hpp>
 
 #include <array>
@@ -22,7 +21,7 @@ namespace palpate::detail {
 ///
 /// g = grad f, H its derivatives; lambda g is the part of x - p along g, tau the rest. The last line solves
 /// the one above it; no multiple of g g^T in H would change it, and H couples only the first two axes.
-/// Lengths in units of about a_min. A second step from the same place (Chebyshev's method) has what delta
+/// Lengths in units of about a_min. A second step from the same point (Chebyshev's method) has what delta
 /// changes to second order on the right, T the third derivatives: -mu H delta - (lambda/2) T delta delta for
 /// tau, (1/2) delta . H delta for f. It needs no new powers.
 template <Real S>
@@ -48,7 +47,7 @@ class SuperellipsoidNewton {
     Axes<V> d, g, h;       // delta, g, adj(|g|^2 M) g
     V Hxx, Hyy, Hxy, Hzz;  // H
     V g2, ag;              // |g|^2, lambda |g|^2
-    V length, curvature;   // largest |delta_i|; g . h, > 0 at a foot that is the nearest around
+    V length, curvature;   // max |delta_i|; g . h, > 0 at a foot that is the nearest around
     V per;                 // its inverse
   };
   template <class V>
@@ -72,26 +71,24 @@ class SuperellipsoidNewton {
   // Everything below is of one register; what is of many goes through them stage by stage, as each waits long
   // for its own logarithms and divisions.
 
-  /// The powers at x, and whether lanes are near.
+  /// The powers at x, and whether points are near.
   template <class V>
   PALPATE_INLINE void begin(const Axes<V>& x, Start<V>& start) const noexcept {
     Foot<V>& foot = start.foot;
-    foot.z = {off_zero<V>(x[0] * per_[0]), off_zero<V>(x[1] * per_[1]), off_zero<V>(x[2] * per_[2])};
+    foot.z = {off_zero(x[0] * per_[0]), off_zero(x[1] * per_[1]), off_zero(x[2] * per_[2])};
     raise(foot);
     start.F = foot.A * foot.s + foot.w * foot.z[2] * foot.z[2];
     // A sum of numbers >= 0 is finite if they are. NaN may have become a number.
-    start.near = all_true<MaskOf<V>>(finite<S>(V(x[0] + x[1] + x[2])), finite<S>(start.F),
-                                     start.F < all_of<V>(S(1.001L)));
+    start.near = is_finite(x[0] + x[1] + x[2]) && is_finite(start.F) && start.F < S(1.001L);
   }
   /// On to where the ray from the centre through x leaves the body.
   template <class V>
   PALPATE_INLINE void leave(Start<V>& start) const noexcept {
     Foot<V>& foot = start.foot;
-    const V log_n = log2_of<S>(start.F) * (S(-1) / q_);
-    start.shallow = all_true<MaskOf<V>>(start.near, log_n < all_of<V>(S(3)));
+    const V log_n = log2(start.F) * (S(-1) / q_);
+    start.shallow = start.near && log_n < S(3);
     // F^(1/q) is homogeneous: no new powers of each. n^(q - p), as n^q = 1 / F:
-    const V n = exp2_of<S>(log_n), n_p2 = across_.of(n, log_n), n_p = n_p2 * n * n,
-            rest = S(1) / (start.F * n_p);
+    const V n = exp2(log_n), n_p2 = across_(n, log_n), n_p = n_p2 * n * n, rest = S(1) / (start.F * n_p);
     for (V& z : foot.z) z *= n;
     foot.u *= n_p2, foot.v *= n_p2, foot.w *= n_p2 * rest, foot.s *= n_p, foot.A *= rest;
   }
@@ -99,11 +96,11 @@ class SuperellipsoidNewton {
   /// The powers of z.
   template <class V>
   PALPATE_INLINE void raise(Foot<V>& foot) const noexcept {
-    foot.u = across_.of(foot.z[0]);
-    foot.v = across_.of(foot.z[1]);
-    foot.w = along_.of(foot.z[2]);
-    foot.s = larger(V(foot.u * foot.z[0] * foot.z[0] + foot.v * foot.z[1] * foot.z[1]), all_of<V>(least));
-    foot.A = over_.of(foot.s);
+    foot.u = across_(foot.z[0]);
+    foot.v = across_(foot.z[1]);
+    foot.w = along_(foot.z[2]);
+    foot.s = (max)(foot.u * foot.z[0] * foot.z[0] + foot.v * foot.z[1] * foot.z[1], least);
+    foot.A = over_(foot.s);
   }
 
   /// The first step; the foot stays where it is.
@@ -133,7 +130,7 @@ class SuperellipsoidNewton {
     return step;
   }
 
-  /// The second one from the same place, added to the first.
+  /// The second one from the same point, added to the first.
   template <class V>
   [[nodiscard]] PALPATE_INLINE End<V> finish(const Foot<V>& foot, const Step<V>& step) const noexcept {
     const auto& [z, u, v, w, s, A] = foot;
@@ -151,7 +148,7 @@ class SuperellipsoidNewton {
     const V A2 = c * ((q_ - S(2) * p_) * alpha * alpha * per_s + (p_ - S(1)) * (ue * e1 + ve * e2)),
             A1 = (S(2) * (p_ - S(1))) * c * alpha, C = ((p_ - S(1)) * (p_ - S(2))) * A;
     const auto beyond = [](const V& e, const V& at) -> V {
-      return absolute(e) - (S(1e-5L) * at + std::numeric_limits<S>::epsilon());
+      return abs(e) - (S(1e-5L) * at + std::numeric_limits<S>::epsilon());
     };
     const V Tx = (A2 * ux + A1 * ue + C * ue * e1 * (per_xy * z[1])) * (per_[0] / S(2)),
             Ty = (A2 * vy + A1 * ve + C * ve * e2 * (per_xy * z[0])) * (per_[1] / S(2)),
@@ -161,22 +158,22 @@ class SuperellipsoidNewton {
             mu = -(along + step.ag * per_g2 * (g[0] * Hx + g[1] * Hy + g[2] * Hz));
     const Axes<V> more =
         solve(step, matrix(step), {-mu * Hx - step.ag * Tx, -mu * Hy - step.ag * Ty, -mu * Hz - step.ag * Tz},
-              V(S(0.5) * (d[0] * Hx + d[1] * Hy + d[2] * Hz)));
+              S(0.5) * (d[0] * Hx + d[1] * Hy + d[2] * Hz));
     return {{d[0] + more[0], d[1] + more[1], d[2] + more[2]},
             {g[0] + Hx + step.Hxx * more[0] + step.Hxy * more[1] + Tx,
              g[1] + Hy + step.Hxy * more[0] + step.Hyy * more[1] + Ty, g[2] + Hz + step.Hzz * more[2] + Tz},
             length(more),
-            larger(larger(beyond(e1, z[0]), beyond(e2, z[1])), beyond(e3, z[2]))};
+            (max)((max)(beyond(e1, z[0]), beyond(e2, z[1])), beyond(e3, z[2]))};
   }
 
-  /// From x by the ray and by first steps, until those of all shallow lanes are at most `enough`, or `most`
-  /// of them; the last one. False, and no step, if no lane is near.
+  /// From x by the ray and by first steps, until those of all shallow points are at most `enough`, or `most`
+  /// of them; the last one. False, and no step, if no point is near.
   template <class V, std::size_t M>
   [[nodiscard]] PALPATE_INLINE bool descend(const std::array<Axes<V>, M>& x, std::array<Start<V>, M>& start,
                                             std::array<Step<V>, M>& step, S enough, int most) const noexcept {
     bool any_near = false;
     for (std::size_t k = 0; k < M; ++k) begin(x[k], start[k]);
-    for (std::size_t k = 0; k < M; ++k) any_near |= any<S>(MaskOf<V>(start[k].near));
+    for (std::size_t k = 0; k < M; ++k) any_near |= any_of(start[k].near);
     if (!any_near) return false;
     for (std::size_t k = 0; k < M; ++k) leave(start[k]);
     for (int count = 1;; ++count) {
@@ -184,7 +181,7 @@ class SuperellipsoidNewton {
       for (std::size_t k = 0; k < M; ++k) {
         step[k] = newton(x[k], start[k].foot);
         move(step[k].d, start[k].foot);
-        done &= !any<S>(all_true(start[k].shallow, negated(is_settled(step[k], enough))));
+        done &= !any_of(start[k].shallow && !is_settled(step[k], enough));
       }
       if (done || count == most) return true;
       for (std::size_t k = 0; k < M; ++k) raise(start[k].foot);
@@ -192,8 +189,7 @@ class SuperellipsoidNewton {
   }
   template <class V>
   [[nodiscard]] static PALPATE_INLINE MaskOf<V> is_settled(const Step<V>& step, S enough) noexcept {
-    return all_true<MaskOf<V>>(step.length <= all_of<V>(enough), step.curvature > V{},
-                               finite<S>(V(step.length + step.curvature)));
+    return step.length <= enough && step.curvature > V{} && is_finite(step.length + step.curvature);
   }
   /// g after a first step that is small.
   template <class V>
@@ -205,14 +201,14 @@ class SuperellipsoidNewton {
 
   template <class V>
   PALPATE_INLINE void move(const Axes<V>& d, Foot<V>& foot) const noexcept {
-    foot.z = {off_zero<V>(foot.z[0] + d[0] * per_[0]), off_zero<V>(foot.z[1] + d[1] * per_[1]),
-              off_zero<V>(foot.z[2] + d[2] * per_[2])};
+    foot.z = {off_zero(foot.z[0] + d[0] * per_[0]), off_zero(foot.z[1] + d[1] * per_[1]),
+              off_zero(foot.z[2] + d[2] * per_[2])};
   }
 
   /// Next to the ends of the third axis powers underflow.
   template <class V>
   [[nodiscard]] static PALPATE_INLINE MaskOf<V> is_usable(const Foot<V>& foot) noexcept {
-    return foot.s > all_of<V>(least / std::numeric_limits<S>::epsilon());
+    return foot.s > least / std::numeric_limits<S>::epsilon();
   }
 
  private:
@@ -222,7 +218,7 @@ class SuperellipsoidNewton {
   // used, products of three too.
   template <class V>
   [[nodiscard]] static PALPATE_INLINE V off_zero(const V& z) noexcept {
-    return larger(z, all_of<V>(sizeof(S) == sizeof(float) ? S(1e-18L) : S(1e-20L)));
+    return (max)(z, sizeof(S) == sizeof(float) ? S(1e-18L) : S(1e-20L));
   }
 
   template <class V>
@@ -248,12 +244,12 @@ class SuperellipsoidNewton {
   }
   template <class V>
   [[nodiscard]] static PALPATE_INLINE V length(const Axes<V>& d) noexcept {
-    return larger(larger(absolute(d[0]), absolute(d[1])), absolute(d[2]));
+    return (max)((max)(abs(d[0]), abs(d[1])), abs(d[2]));
   }
 
   Vec3<S> axes_, per_;
   S p_, q_;
-  LanePower<S> across_, along_, over_;
+  Power<S> across_, along_, over_;
 };
 
 }  // namespace palpate::detail

@@ -51,16 +51,16 @@ template <Real S>
   return {S(1) - v - w, v, w};
 }
 
-/// A ray made ready for many triangles: axes turned so that the direction's largest part is the last, and
-/// sheared onto it. Neighbours compute a shared edge from the same numbers in the same order, so that no ray
-/// passes between them. Source: [woop2013].
+/// A ray made ready for many triangles: axes permuted so that the direction's greatest component is the last,
+/// and sheared onto it. Neighbours compute a shared edge from the same numbers in the same order, so that no
+/// ray passes between them. Source: [woop2013].
 template <Real S>
 struct ShearedRay {
   Vec3<S> origin;
   std::array<int, 3> axis;
   S sx, sy, sz;
 
-  /// Precondition: the largest entry of |d| is 1 or near it.
+  /// Precondition: the greatest entry of |d| is 1 or near it.
   ShearedRay(const Vec3<S>& o, const Vec3<S>& d) noexcept : origin(o) {
     int z = 0;
     d.cwiseAbs().maxCoeff(&z);

@@ -41,23 +41,23 @@ template <ContactSurface Object, ForceModel Force>
 
 /// Two leaves as one, and each of them again.
 template <Real S>
-[[nodiscard]] inline PointLanes<S, 2 * lane_count> joined(const PointLanes<S>& a,
-                                                          const PointLanes<S>& b) noexcept {
-  PointLanes<S, 2 * lane_count> both;
-  const auto join = [](const std::array<S, lane_count>& first, const std::array<S, lane_count>& second,
+[[nodiscard]] inline PointBatch<S, 2 * batch_size> joined(const PointBatch<S>& a,
+                                                          const PointBatch<S>& b) noexcept {
+  PointBatch<S, 2 * batch_size> both;
+  const auto join = [](const std::array<S, batch_size>& first, const std::array<S, batch_size>& second,
                        auto& to) {
     std::memcpy(to.data(), first.data(), sizeof first);
-    std::memcpy(to.data() + lane_count, second.data(), sizeof second);
+    std::memcpy(to.data() + batch_size, second.data(), sizeof second);
   };
   join(a.x, b.x, both.x), join(a.y, b.y, both.y), join(a.z, b.z, both.z);
   return both;
 }
 template <Real S>
-[[nodiscard]] inline PenetrationLanes<S> part(const PenetrationLanes<S, 2 * lane_count>& both,
+[[nodiscard]] inline PenetrationBatch<S> part(const PenetrationBatch<S, 2 * batch_size>& both,
                                               std::size_t k) noexcept {
-  PenetrationLanes<S> one;
-  const auto take = [k](const auto& from, std::array<S, lane_count>& to) {
-    std::memcpy(to.data(), from.data() + k * lane_count, sizeof to);
+  PenetrationBatch<S> one;
+  const auto take = [k](const auto& from, std::array<S, batch_size>& to) {
+    std::memcpy(to.data(), from.data() + k * batch_size, sizeof to);
   };
   take(both.depth, one.depth);
   take(both.gradient_x, one.gradient_x);
@@ -66,56 +66,56 @@ template <Real S>
   return one;
 }
 
-/// Calls visit(begin, x, in) for every leaf of the tool with a point inside the surface: `lane_count` points
+/// Calls visit(begin, x, in) for every leaf of the tool with a point inside the surface: `batch_size` points
 /// from `begin` on, depth <= 0 for those that do not touch. Leaves are measured at once where the surface
 /// can, two of them where it can that.
 template <ContactSurface Object, Real S, class Visit>
 inline void for_each_touching_leaf(const ToolPoints<S>& tool, const Pose<S>& X, const Object& object,
                                    const Visit& visit) noexcept {
-  const auto offer = [&](std::uint32_t begin, std::uint32_t count, const PointLanes<S>& x,
-                         PenetrationLanes<S>& in) noexcept {
+  const auto offer = [&](std::uint32_t begin, std::uint32_t count, const PointBatch<S>& x,
+                         PenetrationBatch<S>& in) noexcept {
     for (std::uint32_t i = count; i < x.x.size(); ++i)  // the last leaf is filled up with a point of its own
       in.depth[i] = in.gradient_x[i] = in.gradient_y[i] = in.gradient_z[i] = S(0);
     if (max_of(in.depth) > S(0)) visit(begin, x, in);
   };
-  if constexpr (HasPenetrationLanes<Object, 2 * lane_count>) {
+  if constexpr (HasPenetrationBatch<Object, 2 * batch_size>) {
     struct Leaf {
       std::uint32_t begin, count;
-      PointLanes<S> x;
+      PointBatch<S> x;
     };
     std::array<Leaf, 2> leaf;
     std::size_t leaves = 0;
     for_each_candidate_leaf(tool, X, object,
-                            [&](std::uint32_t begin, std::uint32_t count, const PointLanes<S>& x) noexcept {
+                            [&](std::uint32_t begin, std::uint32_t count, const PointBatch<S>& x) noexcept {
                               leaf[leaves] = {begin, count, x};
                               if (++leaves < leaf.size()) return;
                               leaves = 0;
-                              PenetrationLanes<S, 2 * lane_count> both;
+                              PenetrationBatch<S, 2 * batch_size> both;
                               object.penetration(joined(leaf[0].x, leaf[1].x), both);
                               for (std::size_t k = 0; k < leaf.size(); ++k) {
-                                PenetrationLanes<S> in = part(both, k);
+                                PenetrationBatch<S> in = part(both, k);
                                 offer(leaf[k].begin, leaf[k].count, leaf[k].x, in);
                               }
                             });
     if (leaves == 0) return;
-    PenetrationLanes<S> in;
+    PenetrationBatch<S> in;
     object.penetration(leaf[0].x, in);
     offer(leaf[0].begin, leaf[0].count, leaf[0].x, in);
   } else {
     for_each_candidate_leaf(tool, X, object,
-                            [&](std::uint32_t begin, std::uint32_t count, const PointLanes<S>& x) noexcept {
-                              PenetrationLanes<S> in;
-                              if constexpr (HasPenetrationLanes<Object>)
+                            [&](std::uint32_t begin, std::uint32_t count, const PointBatch<S>& x) noexcept {
+                              PenetrationBatch<S> in;
+                              if constexpr (HasPenetrationBatch<Object>)
                                 object.penetration(x, in);
                               else
-                                penetrate_one_by_one(object, x, count, in);
+                                penetrate_one_by_one(object, x, in, 0, count);
                               offer(begin, count, x, in);
                             });
   }
 }
 
 template <Real S>
-[[nodiscard]] inline Vec3<S> mean(const PointLanes<S>& x) noexcept {
+[[nodiscard]] inline Vec3<S> mean(const PointBatch<S>& x) noexcept {
   Vec3<S> sum = Vec3<S>::Zero();
   for (std::size_t i = 0; i < x.x.size(); ++i) sum += Vec3<S>(x.x[i], x.y[i], x.z[i]);
   return sum / static_cast<S>(x.x.size());
@@ -124,15 +124,15 @@ template <Real S>
 /// What a leaf's points weigh: m_i/m up to the sharing's norm [-], and 1/A_i [1/m^2].
 template <Real S>
 struct alignas(64) LeafShare {
-  std::array<S, lane_count> weight, per_area;
+  std::array<S, batch_size> weight, per_area;
 };
 template <class Sharing, Real S>
 [[nodiscard]] std::vector<LeafShare<S>> leaf_shares(const ToolPoints<S>& tool) {
-  std::vector<LeafShare<S>> shares((tool.size() + lane_count - 1) / lane_count);
-  for (std::size_t i = 0; i < lane_count * shares.size(); ++i) {
+  std::vector<LeafShare<S>> shares((tool.size() + batch_size - 1) / batch_size);
+  for (std::size_t i = 0; i < batch_size * shares.size(); ++i) {
     const S area = tool.area((std::min)(i, tool.size() - 1));
-    shares[i / lane_count].weight[i % lane_count] = Sharing::weight(area, tool.contact_area());
-    shares[i / lane_count].per_area[i % lane_count] = S(1) / area;
+    shares[i / batch_size].weight[i % batch_size] = Sharing::weight(area, tool.contact_area());
+    shares[i / batch_size].per_area[i % batch_size] = S(1) / area;
   }
   return shares;
 }
@@ -140,12 +140,12 @@ template <class Sharing, Real S>
 /// Adds to `sum` the points of a leaf, each with its share of the law's force. A map's law is that at the
 /// leaf's middle, a point of the tool.
 template <Real S, ForceModel Force>
-inline void add_leaf(const LeafShare<S>& share, const Force& force, const PointLanes<S>& x,
-                     const PenetrationLanes<S>& in, LeafSum<S>& sum) noexcept {
-  std::array<S, lane_count> f;
+inline void add_leaf(const LeafShare<S>& share, const Force& force, const PointBatch<S>& x,
+                     const PenetrationBatch<S>& in, LeafSum<S>& sum) noexcept {
+  std::array<S, batch_size> f;
   using V = leaf_simd<S>;
   if constexpr (HasForces<Force, V>) {
-    for (std::size_t i = 0; i < lane_count; i += V::size()) {
+    for (std::size_t i = 0; i < batch_size; i += V::size()) {
       const V depth = (min)((max)(V(&in.depth[i]), S(0)), force.max_depth());
       (V(&share.weight[i]) * force.forces(depth)).copy_to(&f[i]);
     }
@@ -153,13 +153,13 @@ inline void add_leaf(const LeafShare<S>& share, const Force& force, const PointL
     const Vec3<S> middle = mean(x);
     const auto law = force.at(middle);
     Vec3<S> configurational = Vec3<S>::Zero();
-    for (std::size_t i = 0; i < lane_count; ++i) {
+    for (std::size_t i = 0; i < batch_size; ++i) {
       f[i] = share.weight[i] * law.force(in.depth[i]);
       configurational += share.weight[i] * law.configurational_force(in.depth[i]);
     }
     sum.add(middle, configurational);
   } else {
-    for (std::size_t i = 0; i < lane_count; ++i)
+    for (std::size_t i = 0; i < batch_size; ++i)
       f[i] = in.depth[i] > S(0) ? share.weight[i] * force.force(in.depth[i]) : S(0);
   }
   sum.add(x, in, f, share.per_area);
@@ -215,8 +215,8 @@ class Collector<SingleRegion<Sharing>, S> {
     LeafSum<S> leaves(X * tool.centre_of_mass());
     detail::for_each_touching_leaf(
         tool, X, object,
-        [&](std::uint32_t begin, const PointLanes<S>& x, const PenetrationLanes<S>& in) noexcept {
-          detail::add_leaf(share_[begin / lane_count], force, x, in, leaves);
+        [&](std::uint32_t begin, const PointBatch<S>& x, const PenetrationBatch<S>& in) noexcept {
+          detail::add_leaf(share_[begin / batch_size], force, x, in, leaves);
         });
     slot_.update(!leaves.empty());
     if (leaves.empty()) return Status::ok;
@@ -253,7 +253,7 @@ class Collector<Regions<N, Sharing>, S> {
     S deepest = S(0);
     detail::for_each_touching_leaf(
         tool, X, object,
-        [&](std::uint32_t begin, const PointLanes<S>&, const PenetrationLanes<S>& in) noexcept {
+        [&](std::uint32_t begin, const PointBatch<S>&, const PenetrationBatch<S>& in) noexcept {
           Leaf& leaf = leaf_[leaves];
           leaf.begin = begin;
           leaf.in = in;
@@ -276,12 +276,12 @@ class Collector<Regions<N, Sharing>, S> {
         const Leaf& leaf = leaf_[k];
         if ((leaf.slots & bit) == 0) continue;
         // Placed anew: less work than to keep them, once other programs' data have taken the caches.
-        const PointLanes<S> x = detail::transformed(X, tool.lanes(leaf.begin));
+        const PointBatch<S> x = detail::transformed(X, tool.lanes(leaf.begin));
         if (leaf.slots == bit) {
           detail::add_leaf(share_[leaf.begin / lanes], force, x, leaf.in, sum);
           continue;
         }
-        PenetrationLanes<S> own = leaf.in;
+        PenetrationBatch<S> own = leaf.in;
         for (std::uint32_t i = 0; i < lanes; ++i) own.depth[i] = leaf.slot[i] == slot ? own.depth[i] : S(0);
         detail::add_leaf(share_[leaf.begin / lanes], force, x, own, sum);
       }
@@ -311,7 +311,7 @@ class Collector<Regions<N, Sharing>, S> {
     }
   }
 
-  static constexpr std::uint32_t lanes = static_cast<std::uint32_t>(lane_count);
+  static constexpr std::uint32_t lanes = static_cast<std::uint32_t>(batch_size);
   /// Of the touching points [m]. A type of its own, so that the tracker is compiled once for all objects.
   struct Positions {
     const ToolPoints<S>* tool;
@@ -322,8 +322,8 @@ class Collector<Regions<N, Sharing>, S> {
   struct Leaf {
     std::uint32_t begin;
     std::uint64_t slots;                          // of its touching points, as bits
-    std::array<std::uint8_t, lane_count> slot{};  // of each of them
-    PenetrationLanes<S> in;
+    std::array<std::uint8_t, batch_size> slot{};  // of each of them
+    PenetrationBatch<S> in;
   };
 
   RegionTracker<S, N> tracker_;
