@@ -14,7 +14,7 @@
 /// Hertz's weight 3 sqrt(a^2 - s^2)/(2 pi a^3) is an integral over discs; the dipole and the couples are
 /// derivatives of Hertz's field. Own derivation from [johnson1985], ch. 3; tested against direct integration.
 
-#include <palpate/core/float_vector.hpp>
+#include <palpate/core/simd.hpp>
 #include <palpate/core/vector.hpp>
 
 #include <algorithm>
@@ -28,37 +28,25 @@
 namespace palpate {
 
 namespace detail {
-/// Four places at a time, for the tick's loops; the long ones take as many as a register holds.
-using Lane = Float4;
-inline constexpr std::uint32_t lane_size = entries<Lane>;
-[[nodiscard]] PALPATE_INLINE Lane lane_at(const float* from) noexcept { return load_vector<Lane>(from); }
-
-template <std::floating_point S>
-[[nodiscard]] PALPATE_INLINE S root(S x) noexcept {
-  return std::sqrt(x);
-}
-template <std::floating_point S>
-[[nodiscard]] PALPATE_INLINE S magnitude(S x) noexcept {
-  return std::abs(x);
-}
-/// atan2(y, x) for x >= 0, y >= 0, not both 0; of SIMD vectors by a polynomial, error below 2e-6.
-[[nodiscard]] PALPATE_INLINE double first_quadrant_angle(double y, double x) noexcept {
-  return std::atan2(y, x);
-}
-template <class V>
-  requires(!std::floating_point<V>)
+/// atan2(y, x) for x >= 0, y >= 0, not both 0; of a Simd by an odd polynomial of degree 11,
+/// error below 2e-6.
+template <SimdOrReal V>
 [[nodiscard]] PALPATE_INLINE V first_quadrant_angle(const V& y, const V& x) noexcept {
-  const V t = smaller(x, y) / larger(x, y), t2 = t * t;
-  const V p = t * (0.99997726f +
-                   t2 * (-0.33262347f +
-                         t2 * (0.19354346f + t2 * (-0.11643287f + t2 * (0.05265332f - t2 * 0.01172120f)))));
-  return y > x ? 1.57079633f - p : p;
+  if constexpr (Real<V>) {
+    return std::atan2(y, x);
+  } else {
+    const V t = (min)(x, y) / (max)(x, y), t2 = t * t;
+    const V p = t * (0.99997726f +
+                     t2 * (-0.33262347f +
+                           t2 * (0.19354346f + t2 * (-0.11643287f + t2 * (0.05265332f - t2 * 0.01172120f)))));
+    return select(y > x, 1.57079633f - p, p);
+  }
 }
 /// asin(x) for 0 <= x <= 1, error below 7e-5. Source: [abramowitz1964], 4.4.45.
-template <class V>
+template <SimdOrReal V>
 [[nodiscard]] PALPATE_INLINE V arc_sine(const V& x) noexcept {
   return 1.57079633f -
-         root(larger(1.f - x, V{})) * (1.5707288f + x * (-0.2121144f + x * (0.0742610f - 0.0187293f * x)));
+         sqrt((max)(1.f - x, V{})) * (1.5707288f + x * (-0.2121144f + x * (0.0742610f - 0.0187293f * x)));
 }
 }  // namespace detail
 
@@ -73,18 +61,18 @@ class Disc {
   };
 
   PALPATE_INLINE Disc(const S& p2, const S& depth, F radius) noexcept : z_(depth), p2_(p2), a_(radius) {
-    using detail::larger, detail::root, detail::magnitude;
+    using detail::abs, detail::select, detail::sqrt;
     const S re = p2 + z_ * z_ - a_ * a_, im = F(2) * a_ * z_;
-    const S modulus = root(re * re + im * im);  // |R|^2
+    const S modulus = sqrt(re * re + im * im);  // |R|^2
     // The root's larger part by a sum, the smaller from the product: no cancellation. At the rim R = 0, which
     // 1e-4 of the radius replaces: far below what a mesh resolves, far above float's rounding.
     const S rim = F(1e-4) * a_ + S{};
-    const S large = larger(S(root(F(0.5) * (modulus + magnitude(re)))), rim), small = F(0.5) * im / large;
-    R_.re = re >= S{} ? large : small;
+    const S large = (detail::max)(sqrt(S(F(0.5) * (modulus + abs(re)))), rim), small = F(0.5) * im / large;
+    R_.re = select(re >= S{}, large, small);
     R_.im = large + small - R_.re;
     const C sum{R_.re + z_, R_.im + a_};
     angle_ = detail::first_quadrant_angle(sum.im, sum.re);
-    const S d = F(1) / (sum.re * sum.re + sum.im * sum.im), r = F(1) / larger(modulus, S(rim * rim));
+    const S d = F(1) / (sum.re * sum.re + sum.im * sum.im), r = F(1) / (detail::max)(modulus, S(rim * rim));
     w_ = {sum.re * d, -sum.im * d};
     iR_ = {R_.re * r, -R_.im * r};
     wR_ = w_ * iR_;

@@ -3,6 +3,7 @@
 
 /// @file  Elastic shape in closed form, without a solve at set-up: the body between two half-spaces.
 
+#include <palpate/core/simd_vec3.hpp>
 #include <palpate/display/mesh_normals.hpp>
 #include <palpate/display/vertex_writer.hpp>
 #include <palpate/elasticity/concept.hpp>
@@ -102,8 +103,7 @@ class HalfSpaceDeformation {
   static constexpr double scale = 1 / (4 * std::numbers::pi);  // of disc.hpp
   using V = Vec3<double>;
   using Screw = detail::Screw;
-  using Lane = detail::FloatRegister;
-  static constexpr std::size_t lane = detail::entries<Lane>;
+  using Simd = detail::simd_at_most<float, 8>;
 
   struct Contact {
     V x, m, d;  // place, unit normal into the body, displacement [m]
@@ -113,8 +113,8 @@ class HalfSpaceDeformation {
 
   // What the base's disc does at a vertex per load, times 4 pi mu, in its own frame.
   struct Profile {
-    std::vector<float> force_in, force_down, shear_in, shear_down, shear_along, tilt_in, tilt_down,
-        tilt_along, twist;
+    std::vector<float> force_in, force_down, shear_in, shear_down, shear_along, couple_in, couple_down,
+        couple_along, torsion;
   };
 
   [[nodiscard]] static const Params& checked(const Params& p, const MeshData<S>& mesh) {
@@ -126,12 +126,12 @@ class HalfSpaceDeformation {
   }
 
   void set_vertices(const MeshData<S>& mesh) {
-    const std::size_t n = mesh.vertices.size(), padded = detail::whole<Lane>(n);
+    const std::size_t n = mesh.vertices.size(), padded = detail::padded<Simd>(n);
     for (auto& list : now_) list.assign(padded, 0.f);
     for (auto* list : {&x_, &y_, &z_, &ux_, &uy_, &uz_}) list->assign(padded, 0.f);
     for (auto* list : {&profile_.force_in, &profile_.force_down, &profile_.shear_in, &profile_.shear_down,
-                       &profile_.shear_along, &profile_.tilt_in, &profile_.tilt_down, &profile_.tilt_along,
-                       &profile_.twist})
+                       &profile_.shear_along, &profile_.couple_in, &profile_.couple_down,
+                       &profile_.couple_along, &profile_.torsion})
       list->assign(padded, 0.f);
     for (std::size_t v = 0; v < n; ++v) {
       moves_.push_back(base_.fixed()[v] ? 0.f : 1.f);
@@ -144,16 +144,16 @@ class HalfSpaceDeformation {
         list[v] = static_cast<float>(value * scale);
       };
       const auto force = disc.flat_punch(1, 0, nu), shear = disc.flat_punch(0, 1, nu),
-                 tilt = disc.bending_couple(1, nu);
+                 couple = disc.bending_couple(1, nu);
       put(profile_.force_in, force.in_plane);
       put(profile_.force_down, force.normal);
       put(profile_.shear_in, shear.in_plane);
       put(profile_.shear_down, shear.normal);
       put(profile_.shear_along, shear.along);
-      put(profile_.tilt_in, tilt.in_plane);
-      put(profile_.tilt_down, tilt.normal);
-      put(profile_.tilt_along, tilt.along);
-      put(profile_.twist, disc.torsional_couple());
+      put(profile_.couple_in, couple.in_plane);
+      put(profile_.couple_down, couple.normal);
+      put(profile_.couple_along, couple.along);
+      put(profile_.torsion, disc.torsional_couple());
     }
   }
 
@@ -280,88 +280,64 @@ class HalfSpaceDeformation {
     }
   }
 
-  [[nodiscard]] static PALPATE_INLINE Lane lane_at(const float* from) noexcept {
-    return detail::load_vector<Lane>(from);
+  using Batch = detail::SimdVec3<Simd>;
+  [[nodiscard]] static PALPATE_INLINE Simd load(const float* from) noexcept { return Simd(from); }
+  // The same vector in every entry.
+  [[nodiscard]] static PALPATE_INLINE Batch repeated(const V& v) noexcept {
+    return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
   }
-  // A vector in every place of a lane, and lanes of vectors.
-  struct Lanes {
-    Lane x, y, z;
-    PALPATE_INLINE Lanes(const Lane& a, const Lane& b, const Lane& c) noexcept : x(a), y(b), z(c) {}
-    PALPATE_INLINE explicit Lanes(const V& v) noexcept
-        : x(detail::all_of<Lane>(static_cast<float>(v.x()))),
-          y(detail::all_of<Lane>(static_cast<float>(v.y()))),
-          z(detail::all_of<Lane>(static_cast<float>(v.z()))) {}
-    [[nodiscard]] PALPATE_INLINE Lane dot(const Lanes& o) const noexcept {
-      return x * o.x + y * o.y + z * o.z;
-    }
-    PALPATE_INLINE void add(const Lane& s, const Lanes& o) noexcept {
-      x += s * o.x;
-      y += s * o.y;
-      z += s * o.z;
-    }
-    PALPATE_INLINE void add_cross(const Lane& s, const Lanes& a, const Lanes& b) noexcept {
-      x += s * (a.y * b.z - a.z * b.y);
-      y += s * (a.z * b.x - a.x * b.z);
-      z += s * (a.x * b.y - a.y * b.x);
-    }
-  };
-  [[nodiscard]] PALPATE_INLINE Lanes from(const Lanes& o, std::size_t v) const noexcept {
-    return {lane_at(&x_[v]) - o.x, lane_at(&y_[v]) - o.y, lane_at(&z_[v]) - o.z};
+  [[nodiscard]] PALPATE_INLINE Batch from(const Batch& o, std::size_t v) const noexcept {
+    return Batch{load(&x_[v]), load(&y_[v]), load(&z_[v])} - o;
   }
 
   void add_base() noexcept {
     const V force = load_.template head<3>(), moment = load_.template tail<3>(), &inward = base_.inward();
-    const Lanes o(base_.middle()), m(inward), shift(motion_.template head<3>()),
-        turn(motion_.template tail<3>());
-    const Lanes t(tangential<double>(force, inward)), k(inward.cross(moment));
-    const Lane fn = detail::all_of<Lane>(static_cast<float>(force.dot(inward))),
-               twist = detail::all_of<Lane>(static_cast<float>(moment.dot(inward))),
-               one = detail::all_of<Lane>(1.f);
+    const Batch o = repeated(base_.middle()), m = repeated(inward),
+                shift = repeated(motion_.template head<3>()), rotation = repeated(motion_.template tail<3>()),
+                t = repeated(tangential<double>(force, inward)), k = repeated(inward.cross(moment));
+    const Simd fn = static_cast<float>(force.dot(inward)), torsion = static_cast<float>(moment.dot(inward)),
+               one = 1.f;
     const Profile& b = profile_;
-    for (std::size_t v = 0; v < x_.size(); v += lane) {
-      const Lanes r = from(o, v);
-      const Lane z = r.dot(m);
-      Lanes p = r;
-      p.add(-z, m);
-      const Lane tp = p.dot(t), kp = p.dot(k);
-      const Lane in =
-          fn * lane_at(&b.force_in[v]) + tp * lane_at(&b.shear_in[v]) + kp * lane_at(&b.tilt_in[v]);
-      const Lane down =
-          fn * lane_at(&b.force_down[v]) + tp * lane_at(&b.shear_down[v]) + kp * lane_at(&b.tilt_down[v]);
-      Lanes u = shift;
-      u.add(in, p);
-      u.add(down, m);
-      u.add(lane_at(&b.shear_along[v]), t);
-      u.add(lane_at(&b.tilt_along[v]), k);
-      u.add_cross(twist * lane_at(&b.twist[v]), m, p);
-      u.add_cross(one, turn, r);
+    for (std::size_t v = 0; v < x_.size(); v += Simd::size()) {
+      const Batch r = from(o, v);
+      const Simd z = dot(r, m);
+      const Batch p = r + (-z) * m;
+      const Simd tp = dot(p, t), kp = dot(p, k);
+      const Simd in = fn * load(&b.force_in[v]) + tp * load(&b.shear_in[v]) + kp * load(&b.couple_in[v]);
+      const Simd down =
+          fn * load(&b.force_down[v]) + tp * load(&b.shear_down[v]) + kp * load(&b.couple_down[v]);
+      Batch u = shift;
+      u += in * p;
+      u += down * m;
+      u += load(&b.shear_along[v]) * t;
+      u += load(&b.couple_along[v]) * k;
+      u += (torsion * load(&b.torsion[v])) * cross(m, p);
+      u += one * cross(rotation, r);
       put(u, v);
     }
   }
 
   void add_contact(const Contact& c, const V& force) noexcept {
-    using detail::all_of, detail::larger, detail::smaller;
-    const Lanes o(c.x), m(c.m), t(scale * tangential<double>(force, c.m));
+    const Batch o = repeated(c.x), m = repeated(c.m), t = repeated(scale * tangential<double>(force, c.m));
     const float a = static_cast<float>(c.a), nu = static_cast<float>(p_.nu),
                 fn = static_cast<float>(scale * force.dot(c.m));
-    for (std::size_t v = 0; v < x_.size(); v += lane) {
-      const Lanes r = from(o, v);
-      const Lane z = r.dot(m), square = larger(r.dot(r), all_of<Lane>(1e-12f * a * a));
-      Lanes p = r;
-      p.add(-z, m);
-      const Lane depth = larger(z * (1.f - smaller(a * a / square, all_of<Lane>(1.f))), Lane{});
-      const auto w = Disc<Lane, float>(p.dot(p), depth, a).flat_punch(fn, p.dot(t), nu);
-      Lanes u{lane_at(&ux_[v]), lane_at(&uy_[v]), lane_at(&uz_[v])};
-      u.add(w.in_plane, p);
-      u.add(w.normal, m);
-      u.add(w.along, t);
+    for (std::size_t v = 0; v < x_.size(); v += Simd::size()) {
+      const Batch r = from(o, v);
+      const Simd z = dot(r, m), square = (detail::max)(dot(r, r), 1e-12f * a * a);  // not 0 at the middle
+      const Batch p = r + (-z) * m;
+      const Simd depth = (detail::max)(z * (1.f - (detail::min)(a * a / square, 1.f)), 0.f);
+      const auto w = Disc<Simd, float>(dot(p, p), depth, a).flat_punch(fn, dot(p, t), nu);
+      Batch u{load(&ux_[v]), load(&uy_[v]), load(&uz_[v])};
+      u += w.in_plane * p;
+      u += w.normal * m;
+      u += w.along * t;
       put(u, v);
     }
   }
-  PALPATE_INLINE void put(const Lanes& u, std::size_t v) noexcept {
-    detail::store_vector(&ux_[v], u.x);
-    detail::store_vector(&uy_[v], u.y);
-    detail::store_vector(&uz_[v], u.z);
+  PALPATE_INLINE void put(const Batch& u, std::size_t v) noexcept {
+    u.x.copy_to(&ux_[v]);
+    u.y.copy_to(&uy_[v]);
+    u.z.copy_to(&uz_[v]);
   }
 
   template <Real T>
@@ -377,7 +353,7 @@ class HalfSpaceDeformation {
 
   Params p_;
   detail::FixedBase base_;
-  std::vector<float> x_, y_, z_, ux_, uy_, uz_;  // undeformed places and displacements [m], whole lanes
+  std::vector<float> x_, y_, z_, ux_, uy_, uz_;  // undeformed positions and displacements [m], padded
   std::vector<float> moves_;                     // 0 for a fixed vertex, else 1
   Profile profile_;
   MeshNormals normals_;

@@ -91,11 +91,11 @@ class ResponseFieldDeformation {
     tick_.each(display_, put);
     moved.vertices = display_.size();
     if (moved.vertices > 0) {
-      using detail::least_of;
-      const detail::Lane3 &low = put.low, &high = put.high;
-      moved.lower = Vec3<float>(least_of(low.x), least_of(low.y), least_of(low.z)).template cast<S>();
+      using detail::reduce_max, detail::reduce_min;
+      const detail::SimdVec3<detail::Simd4>&low = put.low, &high = put.high;
+      moved.lower = Vec3<float>(reduce_min(low.x), reduce_min(low.y), reduce_min(low.z)).template cast<S>();
       moved.upper =
-          Vec3<float>(-least_of(-high.x), -least_of(-high.y), -least_of(-high.z)).template cast<S>();
+          Vec3<float>(reduce_max(high.x), reduce_max(high.y), reduce_max(high.z)).template cast<S>();
     }
     if (with_normals) {
       normals_.write_positions(out);
@@ -116,12 +116,12 @@ class ResponseFieldDeformation {
   // places that those are made from, and from there row by row to the caller.
   template <Real T>
   struct Put {
-    using Lane = detail::Lane;
+    using Simd = detail::Simd4;
     const float *at_x, *at_y, *at_z;  // at rest, by slot
     const std::uint32_t* vertex;
     detail::VertexWriter<T> to;
     VertexPositions* place;  // null: no normals
-    detail::Lane3 low, high;
+    detail::SimdVec3<detail::Simd4> low, high;
 
     Put(const ResponseDisplay& display, const VertexBuffer<T>& out, VertexPositions* places) noexcept
         : at_x(display.x()),
@@ -130,20 +130,20 @@ class ResponseFieldDeformation {
           vertex(display.vertex()),
           to(out.positions, out.position_stride),
           place(places) {
-      const Lane far = detail::four((std::numeric_limits<float>::max)());
+      const Simd far = (std::numeric_limits<float>::max)();
       low = {far, far, far};
       high = {-far, -far, -far};
     }
-    PALPATE_INLINE void operator()(std::size_t slot, const detail::Lane3& u) noexcept {
-      using detail::larger, detail::smaller, detail::lane_at;
-      const detail::Lane3 at{lane_at(at_x + slot) + u.x, lane_at(at_y + slot) + u.y,
-                             lane_at(at_z + slot) + u.z};
-      low = {smaller(low.x, at.x), smaller(low.y, at.y), smaller(low.z, at.z)};
-      high = {larger(high.x, at.x), larger(high.y, at.y), larger(high.z, at.z)};
+    PALPATE_INLINE void operator()(std::size_t slot, const detail::SimdVec3<detail::Simd4>& u) noexcept {
+      const detail::SimdVec3<detail::Simd4> at{Simd(at_x + slot) + u.x, Simd(at_y + slot) + u.y,
+                                               Simd(at_z + slot) + u.z};
+      low = {(detail::min)(low.x, at.x), (detail::min)(low.y, at.y), (detail::min)(low.z, at.z)};
+      high = {(detail::max)(high.x, at.x), (detail::max)(high.y, at.y), (detail::max)(high.z, at.z)};
       if (place != nullptr)
         place->set_four(vertex + slot, at.x, at.y, at.z);
       else
-        to.put_apart([this, slot](std::size_t k) { return vertex[slot + k]; }, at.x, at.y, at.z);
+        to.put_apart([this, slot](std::size_t k) { return vertex[slot + k]; }, at.x.native[0], at.y.native[0],
+                     at.z.native[0]);
     }
   };
 

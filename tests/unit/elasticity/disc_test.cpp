@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <palpate/core/detail/simd_shuffle.hpp>
 #include <palpate/elasticity/flat_punch.hpp>
 #include <palpate/elasticity/point_load.hpp>
 
@@ -78,24 +79,26 @@ TEST_CASE("flat punch: uniform displacement under it, Mindlin's and Boussinesq's
   }
 }
 
-TEST_CASE("lanes agree with real numbers") {
-  using detail::Lane;
-  for (int first = 0; first < 8; first += int(detail::lane_size)) {
-    Lane p2, z;
-    for (int i = 0; i < int(detail::lane_size); ++i) {
+TEST_CASE("a Simd agrees with real numbers") {
+  using detail::Simd4;
+  for (int first = 0; first < 8; first += 4) {
+    Simd4 p2, z;
+    for (int i = 0; i < 4; ++i) {
       const int k = first + i;
-      p2[i] = 0.3f * float(k * k), z[i] = 0.1f * float(k % 3);
+      p2.set(std::size_t(i), 0.3f * float(k * k)), z.set(std::size_t(i), 0.1f * float(k % 3));
     }
-    const Disc<Lane, float> lanes(p2, z, 1.f);
-    const auto u = lanes.flat_punch(0.7f, detail::four(0.2f), 0.3f);
-    const float most = -detail::least_of(-p2);
-    const Lane angle = detail::arc_sine(p2 / most);
-    for (int i = 0; i < int(detail::lane_size); ++i) {
-      const auto one = Disc<double>(double(p2[i]), double(z[i]), 1.0).flat_punch(0.7, 0.2, 0.3);
+    const Disc<Simd4, float> four(p2, z, 1.f);
+    const auto u = four.flat_punch(0.7f, detail::Simd4(0.2f), 0.3f);
+    const float most = detail::reduce_max(p2);
+    const Simd4 angle = detail::arc_sine(p2 / most);
+    for (int i = 0; i < 4; ++i) {
+      const auto one =
+          Disc<double>(double(p2[std::size_t(i)]), double(z[std::size_t(i)]), 1.0).flat_punch(0.7, 0.2, 0.3);
       // float and a polynomial arctangent of 1e-5
-      CHECK_ABSOLUTE(u.normal[i], one.normal, 3e-4);
-      CHECK_ABSOLUTE(u.along[i], one.along, 3e-4);
-      CHECK_ABSOLUTE(angle[i], std::asin(double(p2[i] / most)), 1e-4);  // the polynomial's 7e-5
+      CHECK_ABSOLUTE(u.normal[std::size_t(i)], one.normal, 3e-4);
+      CHECK_ABSOLUTE(u.along[std::size_t(i)], one.along, 3e-4);
+      CHECK_ABSOLUTE(angle[std::size_t(i)], std::asin(double(p2[std::size_t(i)] / most)),
+                     1e-4);  // the polynomial's 7e-5
     }
   }
 }

@@ -56,8 +56,8 @@ TEST_CASE("a quadratic field is drawn exactly on a face, near a contact; far fro
       if (away > reach + 0.005 + 0.02) CHECK(!any);
       if (away > 0.6 * reach || std::min({p.y(), q.y(), r.y()}) < 0.1 - 1e-9) continue;
       REQUIRE(any);
-      const detail::Lane third = detail::four(1.f / 3);
-      const detail::Lane3 more = bend(third, third);
+      const detail::Simd4 third = detail::Simd4(1.f / 3);
+      const detail::SimdVec3<detail::Simd4> more = bend(third, third);
       const V drawn = (u(p) + u(q) + u(r)) / 3 + V(more.x[0], more.y[0], more.z[0]),
               linear = (u(p) + u(q) + u(r)) / 3;
       // The penalty on second derivatives (edge_bend.hpp) makes them too small where neighbours lie to one
@@ -141,8 +141,9 @@ TEST_CASE("near fields are drawn by their values at the middles of edges, a cont
   std::array<detail::DrawnContact, 2> contact{contact_at(V(0.03, 0.1, 0.03)), contact_at(V(0.07, 0.1, 0.06))};
   contact[0].near.normal = 1, contact[1].near.normal = 0.5f;
   const auto near = [&contact](std::size_t c, const V& x) {
-    const auto at = [&x](int axis) { return detail::four(float(x[axis])); };
-    const detail::Lane3 u = contact[c].near(detail::Lane3{at(0), at(1), at(2)});
+    const auto at = [&x](int axis) { return detail::Simd4(float(x[axis])); };
+    const detail::SimdVec3<detail::Simd4> u =
+        contact[c].near(detail::SimdVec3<detail::Simd4>{at(0), at(1), at(2)});
     return V(u.x[0], u.y[0], u.z[0]);
   };
   std::vector<float> total(3 * n, 0.f), own(2 * 3 * n, 0.f);  // nothing but near fields
@@ -162,8 +163,8 @@ TEST_CASE("near fields are drawn by their values at the middles of edges, a cont
     if (std::min({p.y(), q.y(), r.y()}) < 0.1 - 1e-9) continue;
     detail::MidEdgeCorrection<2>::OfTriangle all{}, part{};
     V apart = V::Zero();
-    const detail::Lane third = detail::four(1.f / 3), half = detail::four(0.5f);
-    const auto value = [](const detail::Lane3& u) { return V(u.x[0], u.y[0], u.z[0]); };
+    const detail::Simd4 third = detail::Simd4(1.f / 3), half = detail::Simd4(0.5f);
+    const auto value = [](const detail::SimdVec3<detail::Simd4>& u) { return V(u.x[0], u.y[0], u.z[0]); };
     for (std::size_t c = 0; c < 2; ++c) {
       const V middle = (p + q + r) / 3;
       const double away = (middle - contact[c].near.x.cast<double>()).norm();
@@ -194,7 +195,7 @@ TEST_CASE("near fields are drawn by their values at the middles of edges, a cont
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       detail::MidEdgeCorrection<2>::OfTriangle bend{};
       if (bent.find(t, bend))
-        for (const detail::Lane& edge : bend.edge) out.insert(out.end(), {edge[0], edge[1], edge[2]});
+        for (const detail::Simd4& edge : bend.edge) out.insert(out.end(), {edge[0], edge[1], edge[2]});
     }
     return out;
   };

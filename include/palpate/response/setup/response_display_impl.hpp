@@ -49,11 +49,11 @@ PALPATE_SETUP_INLINE void ResponseDisplay::bind(const SolveMesh& mesh,
       b1_.push_back(static_cast<float>(bound.weight[1]));
       b2_.push_back(static_cast<float>(bound.weight[2]));
       vertex_.push_back(order[i]);
-    } while (last && vertex_.size() % detail::lane_size != 0);
+    } while (last && vertex_.size() % detail::Simd4::size() != 0);
     spans_.back().end = static_cast<std::uint32_t>(vertex_.size());
   }
   for (auto* list : {&around_.x, &around_.y, &around_.z, &around_.radius})
-    list->resize(detail::whole<detail::Lane>(spans_.size()));
+    list->resize(detail::padded<detail::Simd4>(spans_.size()));
   size_ = points.size();
 }
 

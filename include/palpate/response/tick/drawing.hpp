@@ -29,14 +29,14 @@ class ResponseDrawing {
       : field_(&field),
         total_(4 * field.stride(), 0.f),
         raised_(total_),
-        close_(whole<Lane>(field.mesh().triangles.size())),
+        close_(padded<Simd4>(field.mesh().triangles.size())),
         corrections_(field.bends(), field.stride()) {}
 
   /// `total`: the field at the solve mesh's vertices, by coordinate.
   void read(const float* total, const DrawnContacts& contacts) noexcept {
     const std::size_t n = field_->stride();
-    for (std::size_t v = 0; v < n; v += lane_size)
-      store_by_fours(&total_[4 * v], lane_at(total + v), lane_at(total + n + v), lane_at(total + 2 * n + v));
+    for (std::size_t v = 0; v < n; v += Simd4::size())
+      store_by_fours(&total_[4 * v], Simd4(total + v), Simd4(total + n + v), Simd4(total + 2 * n + v));
     double d2 = 0;
     for (const DrawnContact& c : contacts.contact) d2 = (std::max)(d2, c.tool.displacement2());
     const auto reach = static_cast<float>(tick::mid_edge_reach * field_->mesh().length);
@@ -57,9 +57,9 @@ class ResponseDrawing {
   }
 
  private:
-  using Wide = FloatRegister;
+  using Wide = simd_at_most<float, 8>;
   using Correction = typename MidEdgeCorrection<Capacity>::OfTriangle;
-  static constexpr std::uint32_t wide = entries<Wide>;
+  static constexpr std::uint32_t wide = Wide::size(), four = Simd4::size();
 
   // Where near fields are exact.
   [[nodiscard]] float reach() const noexcept {
@@ -75,13 +75,13 @@ class ResponseDrawing {
   // Which spans have vertices within reach of a contact, or may have.
   void find_close(const ResponseDisplay& display, const DrawnContacts& contacts) noexcept {
     const ResponseDisplay::Spheres& around = display.around();
-    for (std::size_t i = 0; i < around.radius.size(); i += lane_size) {
-      const auto from = [i](const std::vector<float>& list) { return lane_at(&list[i]); };
-      const Lane x = from(around.x), y = from(around.y), z = from(around.z), radius = from(around.radius);
-      Lane inside = four(-1);
+    for (std::size_t i = 0; i < around.radius.size(); i += Simd4::size()) {
+      const auto from = [i](const std::vector<float>& list) { return Simd4(&list[i]); };
+      const Simd4 x = from(around.x), y = from(around.y), z = from(around.z), radius = from(around.radius);
+      Simd4 inside = Simd4(-1.f);
       for (std::size_t c = 0; c < contacts.contact.size(); ++c)
-        inside = larger(inside, within_reach(x, y, z, radius, contacts.contact[c].near));
-      store_vector(&close_[i], inside);
+        inside = (max)(inside, within_reach(x, y, z, radius, contacts.contact[c].near));
+      store(&close_[i], inside);
     }
   }
   [[nodiscard]] PALPATE_INLINE bool is_close(const ResponseDisplay& display,
@@ -91,12 +91,12 @@ class ResponseDrawing {
 
   // Linear over one triangle of the solve mesh: x, y, z at corner 0, and along the edges from it.
   struct Linear {
-    Lane at0, edge1, edge2;
+    Simd4 at0, edge1, edge2;
     Linear() = default;
-    PALPATE_INLINE Linear(const Lane& corner0, const Lane& corner1, const Lane& corner2) noexcept
+    PALPATE_INLINE Linear(const Simd4& corner0, const Simd4& corner1, const Simd4& corner2) noexcept
         : at0(corner0), edge1(corner1 - corner0), edge2(corner2 - corner0) {}
     template <class V>
-    [[nodiscard]] PALPATE_INLINE Axes<V> operator()(const V& b1, const V& b2) const noexcept {
+    [[nodiscard]] PALPATE_INLINE SimdVec3<V> operator()(const V& b1, const V& b2) const noexcept {
       return {at0[0] + b1 * edge1[0] + b2 * edge2[0], at0[1] + b1 * edge1[1] + b2 * edge2[1],
               at0[2] + b1 * edge1[2] + b2 * edge2[2]};
     }
@@ -107,8 +107,8 @@ class ResponseDrawing {
     Correction correction;
     bool corrected;
     template <class V>
-    [[nodiscard]] PALPATE_INLINE Axes<V> operator()(const V& b1, const V& b2) const noexcept {
-      Axes<V> u = linear(b1, b2);
+    [[nodiscard]] PALPATE_INLINE SimdVec3<V> operator()(const V& b1, const V& b2) const noexcept {
+      SimdVec3<V> u = linear(b1, b2);
       if (corrected) u += correction(b1, b2);
       return u;
     }
@@ -116,7 +116,7 @@ class ResponseDrawing {
   [[nodiscard]] PALPATE_INLINE Interpolant total_over(std::size_t triangle) const noexcept {
     const auto& [p, q, r] = field_->mesh().triangles[triangle];
     Interpolant u;
-    u.linear = {lane_at(&raised_[4 * p]), lane_at(&raised_[4 * q]), lane_at(&raised_[4 * r])};
+    u.linear = {Simd4(&raised_[4 * p]), Simd4(&raised_[4 * q]), Simd4(&raised_[4 * r])};
     u.corrected = !field_->mesh().fixed_triangle[triangle] && corrections_.find(triangle, u.correction);
     return u;
   }
@@ -125,7 +125,7 @@ class ResponseDrawing {
                                      std::size_t c) const noexcept {
     const std::size_t n = field_->stride();
     const auto at = [n, own = contacts.own + 3 * n * c](std::uint32_t v) {
-      return Lane{own[v], own[n + v], own[2 * n + v], 0};
+      return Simd4(own[v], own[n + v], own[2 * n + v], 0.f);
     };
     const auto& [p, q, r] = field_->mesh().triangles[triangle];
     Interpolant u;
@@ -146,11 +146,11 @@ class ResponseDrawing {
       const ResponseDisplay::Span span = spans[s];
       const Interpolant total = total_over(span.triangle);
       if (total.corrected) {
-        for (std::uint32_t i = span.begin; i < span.end; i += lane_size)
-          out(i, total(lane_at(weight1 + i), lane_at(weight2 + i)));
+        for (std::uint32_t i = span.begin; i < span.end; i += four)
+          out(i, total(Simd4(weight1 + i), Simd4(weight2 + i)));
       } else {  // most: a loop without the question
-        for (std::uint32_t i = span.begin; i < span.end; i += lane_size)
-          out(i, total.linear(lane_at(weight1 + i), lane_at(weight2 + i)));
+        for (std::uint32_t i = span.begin; i < span.end; i += four)
+          out(i, total.linear(Simd4(weight1 + i), Simd4(weight2 + i)));
       }
     }
     if constexpr (std::is_copy_assignable_v<Emit>) emit = out;
@@ -164,8 +164,8 @@ class ResponseDrawing {
     const Refined refined(*this, display, s, contacts);
     std::uint32_t i = span.begin;
     for (; i + wide <= span.end; i += wide) refine_at<Wide>(display, i, refined, contacts, emit);
-    if constexpr (!std::is_same_v<Wide, Lane>)
-      if (i < span.end) refine_at<Lane>(display, i, refined, contacts, emit);
+    if constexpr (!std::is_same_v<Wide, Simd4>)
+      if (i < span.end) refine_at<Simd4>(display, i, refined, contacts, emit);
   }
   // What is the same all over a span.
   struct Refined {
@@ -191,54 +191,55 @@ class ResponseDrawing {
   template <class V, class Emit>
   PALPATE_INLINE void refine_at(const ResponseDisplay& display, std::uint32_t i, const Refined& span,
                                 const DrawnContacts& contacts, Emit& emit) const noexcept {
-    const auto from = [i](const float* list) { return load_vector<V>(list + i); };
+    const auto from = [i](const float* list) { return load<V>(list + i); };
     const V b1 = from(display.b1()), b2 = from(display.b2());
-    const Axes<V> at{from(display.x()), from(display.y()), from(display.z())};
-    Axes<V> u = span.total(b1, b2);
+    const SimdVec3<V> at{from(display.x()), from(display.y()), from(display.z())};
+    SimdVec3<V> u = span.total(b1, b2);
     const float reach = this->reach();
     bool on_patch = false;
     for (auto c : span.close) {
       const NearField& k = contacts.contact[c].near;
       const V rx = at.x - k.x.x(), ry = at.y - k.x.y(), rz = at.z - k.x.z(), r2 = rx * rx + ry * ry + rz * rz;
-      const float nearest = least_of(r2);
+      const float nearest = reduce_min(r2);
       if (nearest >= (reach + k.a) * (reach + k.a)) continue;
       // A sphere moves what lies within two radii (rest_on_sphere), a patch what lies within one.
       on_patch = on_patch || nearest < 5 * k.a * k.a;
-      const V weight = between(V((reach + k.a - root(r2)) * (1 / (tick::reach_fade * reach))), 0, 1);
-      const Axes<V> exact = k(at), drawn = span.own[c](b1, b2);
+      const V weight = clamp(V((reach + k.a - sqrt(r2)) * (1 / (tick::reach_fade * reach))), 0.f, 1.f);
+      const SimdVec3<V> exact = k(at), drawn = span.own[c](b1, b2);
       u.x += weight * (exact.x - drawn.x);
       u.y += weight * (exact.y - drawn.y);
       u.z += weight * (exact.z - drawn.z);
     }
     if (on_patch)
       for (auto c : span.close) follow(contacts.contact[c], at, reach, u);
-    detail::each_four<V>([&](auto k) PALPATE_INLINE_LAMBDA {
-      emit(i + k, Lane3{four_of<k>(u.x), four_of<k>(u.y), four_of<k>(u.z)});
+    for_each_chunk<4>(u.x, [&](auto k, const Simd4& x) PALPATE_INLINE_LAMBDA {
+      emit(i + k, SimdVec3<Simd4>{x, chunk<4, k>(u.y), chunk<4, k>(u.z)});
     });
   }
 
   // The patch moves by d and rotates with the tool, as far as the contact is active; beneath a sphere the surface lies
   // on it.
   template <class V>
-  static void follow(const DrawnContact& c, const Axes<V>& at, float reach, Axes<V>& u) noexcept {
+  static void follow(const DrawnContact& c, const SimdVec3<V>& at, float reach, SimdVec3<V>& u) noexcept {
     const NearField& near = c.near;
     const V rx = at.x - near.x.x(), ry = at.y - near.x.y(), rz = at.z - near.x.z(),
             r2 = rx * rx + ry * ry + rz * rz;
     if (near.is_sphere) {
-      for (std::uint32_t l = 0; l < entries<V>; ++l) {
+      for (std::uint32_t l = 0; l < V::size(); ++l) {
         if (r2[l] > 4 * near.a * near.a) continue;
         Vec3<double> v(double(u.x[l]), double(u.y[l]), double(u.z[l]));
         rest_on_sphere(c, Vec3<double>(double(at.x[l]), double(at.y[l]), double(at.z[l])), double(reach), v);
-        u.x[l] = static_cast<float>(v[0]), u.y[l] = static_cast<float>(v[1]),
-        u.z[l] = static_cast<float>(v[2]);
+        u.x.set(l, static_cast<float>(v[0]));
+        u.y.set(l, static_cast<float>(v[1]));
+        u.z.set(l, static_cast<float>(v[2]));
       }
       return;
     }
     // Over the last fiftieth of the radius to the field outside: a vertex that comes in moves fast, and does not jump.
     constexpr float per_edge = 1 / tick::patch_edge;
     const Vec3<float> d = c.tool.d.template cast<float>();
-    const V inside = between(V(1.f + per_edge - per_edge / near.a * root(r2)), 0, 1) * near.activation;
-    Axes<V> to{all_of<V>(d.x()), all_of<V>(d.y()), all_of<V>(d.z())};
+    const V inside = clamp(V(1.f + per_edge - per_edge / near.a * sqrt(r2)), 0.f, 1.f) * near.activation;
+    SimdVec3<V> to{d.x(), d.y(), d.z()};
     if (c.tool.is_rotated()) {
       const Mat3<float>& t = near.rotation;
       to.x += t(0, 0) * rx + t(0, 1) * ry + t(0, 2) * rz;

@@ -51,7 +51,7 @@ class FieldSum {
 
  private:
   using Row = Eigen::Map<const Eigen::ArrayXf>;
-  using Wide = FloatRegister;
+  using Wide = simd_at_most<float, 8>;
   [[nodiscard]] static Eigen::Map<Eigen::ArrayXf> all(std::vector<float>& list) noexcept {
     return {list.data(), static_cast<Eigen::Index>(list.size())};
   }
@@ -118,12 +118,12 @@ class FieldSum {
   void add_near(std::size_t c) noexcept {
     const std::size_t n = field_->stride();
     float* const own = &near_[c * 3 * n];
-    for (std::size_t v = 0; v < n; v += entries<Wide>) {
-      const auto at = [this, v](int axis) { return load_vector<Wide>(field_->coordinate(axis) + v); };
-      const auto u = drawn_[c].near(Axes<Wide>{at(0), at(1), at(2)});
-      store_vector(own + v, u.x);
-      store_vector(own + n + v, u.y);
-      store_vector(own + 2 * n + v, u.z);
+    for (std::size_t v = 0; v < n; v += Wide::size()) {
+      const auto at = [this, v](int axis) { return load<Wide>(field_->coordinate(axis) + v); };
+      const auto u = drawn_[c].near(SimdVec3<Wide>{at(0), at(1), at(2)});
+      store(own + v, u.x);
+      store(own + n + v, u.y);
+      store(own + 2 * n + v, u.z);
     }
     all(total_) += Row(own, static_cast<Eigen::Index>(total_.size()));
   }

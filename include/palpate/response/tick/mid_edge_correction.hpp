@@ -24,9 +24,9 @@ class MidEdgeCorrection {
  public:
   /// Four times the corrections of a triangle's edges.
   struct OfTriangle {
-    Lane edge[3];
+    Simd4 edge[3];
     template <class V>
-    [[nodiscard]] PALPATE_INLINE Axes<V> operator()(const V& b1, const V& b2) const noexcept {
+    [[nodiscard]] PALPATE_INLINE SimdVec3<V> operator()(const V& b1, const V& b2) const noexcept {
       const V b0 = 1.f - b1 - b2, q0 = b0 * b1, q1 = b1 * b2, q2 = b2 * b0;
       return {q0 * edge[0][0] + q1 * edge[1][0] + q2 * edge[2][0],
               q0 * edge[0][1] + q1 * edge[1][1] + q2 * edge[2][1],
@@ -47,7 +47,7 @@ class MidEdgeCorrection {
     find_rest(total, own, stride, count);
     find_shares(contacts, reach);
     all_.list();
-    for (const std::uint32_t edge : all_.edges) store_vector(&all_.value[4 * edge], correction(edge));
+    for (const std::uint32_t edge : all_.edges) store(&all_.value[4 * edge], correction(edge));
     for (std::size_t c = 0; c < count; ++c) {
       own_[c].list();
       correct_near(contacts[c].near, own + 3 * stride * c, stride, own_[c]);
@@ -60,21 +60,21 @@ class MidEdgeCorrection {
              std::span<const DrawnContact> contacts, float reach, float max, float* raised) const noexcept {
     const MidEdgeTable::Rows& rows = table_->vertex_rows();
     const float max2 = max * max + (std::numeric_limits<float>::min)();
-    for (std::size_t first = 0; first < rows.size(); first += lane_size) {
-      const Lane3 at{lane_at(vertices[0] + first), lane_at(vertices[1] + first),
-                     lane_at(vertices[2] + first)};
-      Lane left = four(1);
-      for (const DrawnContact& c : contacts) left *= 1 - share(c.near, at, reach);
-      Lane by[lane_size];
-      for (std::size_t k = 0; k < lane_size; ++k)
-        by[k] = left[k] > 0 && first + k < rows.size() ? sum(rows[first + k], field) : Lane{};
-      Lane x = by[0], y = by[1], z = by[2], none = by[3];
+    for (std::size_t first = 0; first < rows.size(); first += Simd4::size()) {
+      const SimdVec3<Simd4> at{Simd4(vertices[0] + first), Simd4(vertices[1] + first),
+                               Simd4(vertices[2] + first)};
+      Simd4 left = 1.f;
+      for (const DrawnContact& c : contacts) left *= 1.f - share(c.near, at, reach);
+      Simd4 by[Simd4::size()];
+      for (std::size_t k = 0; k < Simd4::size(); ++k)
+        by[k] = left[k] > 0 && first + k < rows.size() ? sum(rows[first + k], field) : Simd4{};
+      Simd4 x = by[0], y = by[1], z = by[2], none = by[3];
       transpose(x, y, z, none);
-      const Lane3 r{x, y, z};
-      const Lane kept = left * max2 / (max2 + dot(r, r));
-      for (std::size_t k = 0; k < lane_size && first + k < rows.size(); ++k) {
+      const SimdVec3<Simd4> r{x, y, z};
+      const Simd4 kept = left * max2 / (max2 + dot(r, r));
+      for (std::size_t k = 0; k < Simd4::size() && first + k < rows.size(); ++k) {
         const std::size_t v = 4 * (first + k);
-        store_vector(raised + v, Lane(lane_at(field + v) + kept[k] * by[k]));
+        store(raised + v, Simd4(Simd4(field + v) + kept[k] * by[k]));
       }
     }
   }
@@ -89,7 +89,7 @@ class MidEdgeCorrection {
   }
 
  private:
-  using Wide = FloatRegister;
+  using Wide = simd_at_most<float, 8>;
   struct Corrections {
     std::vector<float> share;          // by edge, padded: 1 near the contact, 0 beyond its reach
     std::vector<float> value;          // by edge, four numbers each; 0 without a share
@@ -101,57 +101,58 @@ class MidEdgeCorrection {
     }
     // After the shares: lists the edges that have one, all without a correction yet.
     void list() noexcept {
-      for (const std::uint32_t edge : edges) store_vector(&value[4 * edge], Lane{});
+      for (const std::uint32_t edge : edges) store(&value[4 * edge], Simd4{});
       edges.clear();
-      for (std::uint32_t e = 0; e < share.size(); e += lane_size) {
-        if (!(-least_of(-lane_at(&share[e])) > 0)) continue;
-        for (std::uint32_t k = e; k < e + lane_size; ++k)
+      constexpr std::uint32_t four = Simd4::size();
+      for (std::uint32_t e = 0; e < share.size(); e += four) {
+        if (!(reduce_max(Simd4(&share[e])) > 0)) continue;
+        for (std::uint32_t k = e; k < e + four; ++k)
           if (share[k] > 0) edges.push_back(k);
       }
     }
     [[nodiscard]] PALPATE_INLINE bool find(const MidEdgeTable::Edges& of, OfTriangle& out) const noexcept {
       const auto& [a, b, c] = of;
       if (!(share[a] + share[b] + share[c] > 0)) return false;
-      out = {{lane_at(&value[4 * a]), lane_at(&value[4 * b]), lane_at(&value[4 * c])}};
+      out = {{Simd4(&value[4 * a]), Simd4(&value[4 * b]), Simd4(&value[4 * c])}};
       return true;
     }
   };
 
   void find_rest(const float* total, const float* own, std::size_t stride, std::size_t count) noexcept {
-    for (std::size_t v = 0; v < stride; v += lane_size) {
-      Lane x{}, y{}, z{};
+    for (std::size_t v = 0; v < stride; v += Simd4::size()) {
+      Simd4 x{}, y{}, z{};
       for (std::size_t c = 0; c < count; ++c) {
         const float* const near = own + 3 * stride * c + v;
-        x += lane_at(near), y += lane_at(near + stride), z += lane_at(near + 2 * stride);
+        x += Simd4(near), y += Simd4(near + stride), z += Simd4(near + 2 * stride);
       }
-      store_by_fours(&rest_[4 * v], lane_at(total + v) - x, lane_at(total + stride + v) - y,
-                     lane_at(total + 2 * stride + v) - z);
+      store_by_fours(&rest_[4 * v], Simd4(total + v) - x, Simd4(total + stride + v) - y,
+                     Simd4(total + 2 * stride + v) - z);
     }
   }
   // How much of the corrections at a point is drawn for one contact: 1 near it, 0 beyond its reach or if it is
   // inactive.
-  [[nodiscard]] static PALPATE_INLINE Lane share(const NearField& near, const Lane3& at,
-                                                 float reach) noexcept {
-    const Lane3 r{at.x - near.x.x(), at.y - near.x.y(), at.z - near.x.z()};
-    const Lane inside = reach + near.a - root(dot(r, r));
-    return near.activation * between(Lane(inside * (1 / (tick::reach_fade * reach))), 0, 1);
+  [[nodiscard]] static PALPATE_INLINE Simd4 share(const NearField& near, const SimdVec3<Simd4>& at,
+                                                  float reach) noexcept {
+    const SimdVec3<Simd4> r{at.x - near.x.x(), at.y - near.x.y(), at.z - near.x.z()};
+    const Simd4 inside = reach + near.a - sqrt(dot(r, r));
+    return near.activation * clamp(Simd4(inside * (1 / (tick::reach_fade * reach))), 0.f, 1.f);
   }
   void find_shares(std::span<const DrawnContact> contacts, float reach) noexcept {
     const auto& [x, y, z] = table_->middles();
-    for (std::size_t e = 0; e < x.size(); e += lane_size) {
-      const Lane3 at{lane_at(&x[e]), lane_at(&y[e]), lane_at(&z[e])};
-      Lane without = four(1), max{};
+    for (std::size_t e = 0; e < x.size(); e += Simd4::size()) {
+      const SimdVec3<Simd4> at{Simd4(&x[e]), Simd4(&y[e]), Simd4(&z[e])};
+      Simd4 without = 1.f, largest{};
       for (std::size_t c = 0; c < contacts.size(); ++c) {
-        const Lane own = share(contacts[c].near, at, reach);
-        store_vector(&own_[c].share[e], own);
-        without *= 1 - own;
-        max = larger(max, own);
+        const Simd4 own = share(contacts[c].near, at, reach);
+        store(&own_[c].share[e], own);
+        without *= 1.f - own;
+        largest = (max)(largest, own);
       }
-      store_vector(&all_.share[e], larger(1 - without, max));  // above 0 where one is, whatever the rounding
+      store(&all_.share[e], (max)(1.f - without, largest));  // above 0 where one is, whatever the rounding
     }
   }
   void correct_near(const NearField& near, const float* own, std::size_t stride, Corrections& out) noexcept {
-    constexpr std::size_t wide = entries<Wide>;
+    constexpr std::size_t wide = Wide::size();
     const auto& middle = table_->middles();
     for (std::size_t i = 0; i < out.edges.size(); i += wide) {
       std::array<std::array<float, wide>, 3> at, mean;
@@ -163,24 +164,22 @@ class MidEdgeCorrection {
           mean[axis][k] = 0.5f * (own[axis * stride + p] + own[axis * stride + q]);
         }
       }
-      const auto from = [](const auto& list) { return load_vector<Wide>(list.data()); };
-      const Axes<Wide> u = near(Axes<Wide>{from(at[0]), from(at[1]), from(at[2])});
+      const auto from = [](const auto& list) { return load<Wide>(list.data()); };
+      const SimdVec3<Wide> u = near(SimdVec3<Wide>{from(at[0]), from(at[1]), from(at[2])});
       const Wide x = u.x - from(mean[0]), y = u.y - from(mean[1]), z = u.z - from(mean[2]);
       for (std::size_t k = 0; k < wide && i + k < out.edges.size(); ++k) {
         const std::uint32_t edge = out.edges[i + k];
-        const Lane correction = 4 * out.share[edge] * Lane{x[k], y[k], z[k], 0};
-        store_vector(&out.value[4 * edge], correction);
-        store_vector(&all_.value[4 * edge], Lane(lane_at(&all_.value[4 * edge]) + correction));
+        const Simd4 correction = 4 * out.share[edge] * Simd4(x[k], y[k], z[k], 0.f);
+        store(&out.value[4 * edge], correction);
+        store(&all_.value[4 * edge], Simd4(Simd4(&all_.value[4 * edge]) + correction));
       }
     }
   }
   // Four sums: one alone would wait for each of some 25 additions.
-  [[nodiscard]] static PALPATE_INLINE Lane sum(std::span<const MidEdgeTable::Weight> weights,
-                                               const float* field) noexcept {
-    const auto part = [&](std::size_t i) {
-      return weights[i].weight * lane_at(field + 4 * weights[i].vertex);
-    };
-    Lane sum{}, sum1{}, sum2{}, sum3{};
+  [[nodiscard]] static PALPATE_INLINE Simd4 sum(std::span<const MidEdgeTable::Weight> weights,
+                                                const float* field) noexcept {
+    const auto part = [&](std::size_t i) { return weights[i].weight * Simd4(field + 4 * weights[i].vertex); };
+    Simd4 sum{}, sum1{}, sum2{}, sum3{};
     std::size_t i = 0;
     for (; i + 4 <= weights.size(); i += 4) {
       sum += part(i);
@@ -191,7 +190,7 @@ class MidEdgeCorrection {
     for (; i < weights.size(); ++i) sum += part(i);
     return (sum + sum1) + (sum2 + sum3);
   }
-  [[nodiscard]] Lane correction(std::uint32_t edge) const noexcept {
+  [[nodiscard]] Simd4 correction(std::uint32_t edge) const noexcept {
     return 4 * all_.share[edge] * sum(table_->edge_rows()[edge], rest_.data());
   }
 

@@ -19,8 +19,8 @@
 /// what Hertz's weight makes of it on the surface, about 1 + 0.9 s^-2 + 0.7 s^-4; within the contact
 /// (1 - (r/a)^2) r `radial` along the surface instead.
 
+#include <palpate/core/simd_vec3.hpp>
 #include <palpate/elasticity/flat_punch.hpp>
-#include <palpate/response/tick/axes.hpp>
 #include <palpate/response/tick/constants.hpp>
 
 namespace palpate::detail {
@@ -61,7 +61,7 @@ struct NearField {
   }
   /// Displacement [m] at points `at`.
   template <class V>
-  [[nodiscard]] PALPATE_INLINE Axes<V> operator()(const Axes<V>& at) const noexcept {
+  [[nodiscard]] PALPATE_INLINE SimdVec3<V> operator()(const SimdVec3<V>& at) const noexcept {
     const Seen<V> seen = see(at);
     return is_sphere ? of_sphere(seen) : of_patch(seen);
   }
@@ -70,41 +70,40 @@ struct NearField {
   // The contact as points see it.
   template <class V>
   struct Seen {
-    Axes<V> p;    // from its middle, along the surface
-    V r2, near2;  // distance^2; 1 / s^2 = min(1, (a/r)^2)
+    SimdVec3<V> p;  // from its middle, along the surface
+    V r2, near2;    // distance^2; 1 / s^2 = min(1, (a/r)^2)
     Disc<V, float> disc;
   };
   template <class V>
-  [[nodiscard]] PALPATE_INLINE Seen<V> see(const Axes<V>& at) const noexcept {
+  [[nodiscard]] PALPATE_INLINE Seen<V> see(const SimdVec3<V>& at) const noexcept {
     const V rx = at.x - x.x(), ry = at.y - x.y(), rz = at.z - x.z();
     const V z = rx * m.x() + ry * m.y() + rz * m.z();
-    const Axes<V> p{rx - z * m.x(), ry - z * m.y(), rz - z * m.z()};
-    const V r2 = larger(rx * rx + ry * ry + rz * rz, all_of<V>(tick::min_distance2 * a * a)),
-            near2 = smaller(a * a / r2, all_of<V>(1.f)),
-            depth = larger(z - smaller(z * near2, all_of<V>(sagitta)), V{});
+    const SimdVec3<V> p{rx - z * m.x(), ry - z * m.y(), rz - z * m.z()};
+    const V r2 = (max)(rx * rx + ry * ry + rz * rz, tick::min_distance2 * a * a),
+            near2 = (min)(a * a / r2, 1.f), depth = (max)(z - (min)(z * near2, sagitta), V{});
     return {p, r2, near2, {p.x * p.x + p.y * p.y + p.z * p.z, depth, a}};
   }
   template <class V>
-  [[nodiscard]] static PALPATE_INLINE V dot(const Axes<V>& p, const Vec3<float>& v) noexcept {
+  [[nodiscard]] static PALPATE_INLINE V dot(const SimdVec3<V>& p, const Vec3<float>& v) noexcept {
     return p.x * v.x() + p.y * v.y() + p.z * v.z();
   }
   template <class V>
-  static PALPATE_INLINE void add(Axes<V>& u, const V& k, const Vec3<float>& v) noexcept {
+  static PALPATE_INLINE void add(SimdVec3<V>& u, const V& k, const Vec3<float>& v) noexcept {
     u.x += k * v.x();
     u.y += k * v.y();
     u.z += k * v.z();
   }
 
   template <class V>
-  [[nodiscard]] PALPATE_INLINE Axes<V> of_sphere(const Seen<V>& seen) const noexcept {
-    const Axes<V>& p = seen.p;
+  [[nodiscard]] PALPATE_INLINE SimdVec3<V> of_sphere(const Seen<V>& seen) const noexcept {
+    const SimdVec3<V>& p = seen.p;
     auto u = seen.disc.hertz(normal, nu);
     if (has_loads) {
       const auto d = seen.disc.force_dipole(nu), t = seen.disc.flat_punch(0, dot(p, along), nu);
       const V near4 = seen.near2 * seen.near2,
               share = (1.f - near4 * seen.near2) /
                       (1.f + tick::hertz_dipole_2 * seen.near2 + tick::hertz_dipole_4 * near4);
-      u.in_plane += t.in_plane + dipole * share * d.in_plane + radial * larger(1.f - seen.r2 / (a * a), V{});
+      u.in_plane += t.in_plane + dipole * share * d.in_plane + radial * (max)(1.f - seen.r2 / (a * a), V{});
       u.normal += t.normal + dipole * share * d.normal;
       u.along = t.along;
     }
@@ -118,18 +117,18 @@ struct NearField {
   struct Sum {
     V in_plane, normal;
     V slope_back{};  // s^-7: what of the patch's slope is taken back at r
-    Axes<V> out;
+    SimdVec3<V> out;
   };
   template <class V>
-  [[nodiscard]] PALPATE_INLINE Axes<V> of_patch(const Seen<V>& seen) const noexcept {
-    const Axes<V>& p = seen.p;
+  [[nodiscard]] PALPATE_INLINE SimdVec3<V> of_patch(const Seen<V>& seen) const noexcept {
+    const SimdVec3<V>& p = seen.p;
     const auto u = seen.disc.flat_punch(normal, dot(p, along), nu);
     Sum<V> sum{u.in_plane, u.normal, {}, {u.along * along.x(), u.along * along.y(), u.along * along.z()}};
     if (has_loads) add_loads(seen, sum);
     if (has_couple) add_couple(seen, sum);
     if (has_torsion) add_torsion(seen, sum);
     if (has_shear) add_shear(seen, sum);
-    Axes<V>& out = sum.out;
+    SimdVec3<V>& out = sum.out;
     out.x += sum.in_plane * p.x + sum.normal * m.x();
     out.y += sum.in_plane * p.y + sum.normal * m.y();
     out.z += sum.in_plane * p.z + sum.normal * m.z();
@@ -139,12 +138,12 @@ struct NearField {
   template <class V>
   PALPATE_INLINE void add_loads(const Seen<V>& seen, Sum<V>& sum) const noexcept {
     const auto d = seen.disc.force_dipole(nu);
-    const V &near2 = seen.near2, inverse = root(near2),
-            beyond = larger(1.f - near2, V{});  // 1 / s; 1 - 1 / s^2
+    const V &near2 = seen.near2, inverse = sqrt(near2),
+            beyond = (max)(1.f - near2, V{});  // 1 / s; 1 - 1 / s^2
     // q_r / (a s): asin(1/s) / (s sqrt(s^2 - 1 + e^2)), with the roots of 1/s^2 instead.
     const V q_r = (radial / a) * arc_sine(inverse) * near2 * inverse /
-                  root(larger(beyond + pole2 * near2, all_of<V>(tick::min_distance2)));
-    const V near4 = near2 * near2, falling = near4 * root(beyond);
+                  sqrt((max)(beyond + pole2 * near2, tick::min_distance2));
+    const V near4 = near2 * near2, falling = near4 * sqrt(beyond);
     sum.in_plane +=
         dipole * d.in_plane + q_r + inverse * falling * (radial_4 + radial_6 * near2 + dot(seen.p, slide));
     const V back = near4 * near4;
@@ -170,8 +169,8 @@ struct NearField {
   }
   template <class V>
   PALPATE_INLINE void add_shear(const Seen<V>& seen, Sum<V>& sum) const noexcept {
-    const Axes<V>& p = seen.p;
-    const Axes<V> sp{dot(p, shear.col(0)), dot(p, shear.col(1)), dot(p, shear.col(2))};  // symmetric
+    const SimdVec3<V>& p = seen.p;
+    const SimdVec3<V> sp{dot(p, shear.col(0)), dot(p, shear.col(1)), dot(p, shear.col(2))};  // symmetric
     const auto s = seen.disc.shear_dipole(p.x * sp.x + p.y * sp.y + p.z * sp.z, nu);
     sum.in_plane += s.in_plane;
     sum.normal += s.normal;
