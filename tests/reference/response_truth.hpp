@@ -2,12 +2,12 @@
 #pragma once
 
 /// @file Surface displacement by geometrically nonlinear finite elements (neo-Hookean, nu = 0.49), every few
-/// vertices of the reference cases t1 (ellipsoid 60 x 40 x 40 mm, E = 1.5 MPa, held below y = -36 mm, stuck
-/// patch of 5 mm at the top) and t6 (cube of 100 mm, E = 1 MPa, held at its base, stuck disc of 10 mm on the
+/// vertices of the reference cases ellipsoid_top (ellipsoid 60 x 40 x 40 mm, E = 1.5 MPa, fixed below y = -36 mm, stuck
+/// patch of 5 mm at the top) and cube (cube of 100 mm, E = 1 MPa, fixed at its base, bonded disc of 10 mm on the
 /// top face), both pressed 4 mm. Taylor-Hood tetrahedra, checked against CalculiX. Own error: displacement
-/// 1.4-1.8 %, force 1.4 % too high. And t8's force: a frictionless ball of 15 mm pressed on the top of the
+/// 1.4-1.8 %, force 1.4 % too high. And ball_ellipsoid's force: a frictionless ball of 15 mm pressed on the top of the
 /// same ellipsoid, the contact growing; own error 0.1 to 1 %, too high, largest where the contact is small.
-/// And such a ball on a slab of 120 x 30 x 100 mm, E = 1 MPa, held at its base (bench/truth/make_reference,
+/// And such a ball on a slab of 120 x 30 x 100 mm, E = 1 MPa, fixed at its base (bench/truth/make_reference,
 /// case ball_slab with 8), and near an edge (case ball_edge with 8).
 
 namespace palpate::test {
@@ -16,7 +16,7 @@ struct TruthVertex {
   float x[3], area, u[3];  // [m], [m^2], [m]
 };
 
-inline constexpr double truth_t8_force[][2] = {  // depth [m], [N]
+inline constexpr double truth_ball_force[][2] = {  // depth [m], [N]
     {0.0005, 3.01307}, {0.001, 8.31295}, {0.002, 22.6942},
     {0.004, 61.1423},  {0.008, 161.973}, {0.012, 282.996}};
 
@@ -31,8 +31,8 @@ inline constexpr double truth_edge_ball_force[][3] = {{0.0005, -0.00410007, -1.8
                                                       {0.004, -1.20890, -37.4276},
                                                       {0.006, -3.39087, -66.7785}};
 
-inline constexpr double truth_t1_force = 69.9884;  // [N]
-inline constexpr TruthVertex truth_t1[] = {
+inline constexpr double truth_ellipsoid_force = 69.9884;  // [N]
+inline constexpr TruthVertex truth_ellipsoid[] = {
     {{3.67394e-18f, -5.99904e-34f, 0.04f}, 1.57664e-05f, {0.f, -0.000602761f, 0.000210082f}},
     {{0.0135464f, -2.21193e-18f, -0.0389672f}, 1.66078e-05f, {0.000103409f, -0.000594668f, -0.000189012f}},
     {{0.0391674f, -6.39551e-18f, -0.0303015f}, 1.76195e-05f, {0.00021214f, -0.00055681f, -7.80295e-05f}},
@@ -334,8 +334,8 @@ inline constexpr TruthVertex truth_t1[] = {
     {{0.0210349f, -0.0365468f, 0.00822676f}, 3.6622e-06f, {0.f, 0.f, 0.f}},
 };
 
-inline constexpr double truth_t6_force = 104.535;  // [N]
-inline constexpr TruthVertex truth_t6[] = {
+inline constexpr double truth_cube_force = 104.535;  // [N]
+inline constexpr TruthVertex truth_cube[] = {
     {{-0.05f, 0.f, 0.05f}, 2.85957e-05f, {0.f, 0.f, 0.f}},
     {{0.05f, 0.1f, 0.05f}, 2.85957e-05f, {2.6565e-05f, -0.000301417f, 2.64498e-05f}},
     {{-0.05f, 0.f, -0.03125f}, 3.15943e-05f, {0.f, 0.f, 0.f}},

@@ -34,28 +34,30 @@ void check_reference(const ResponseField& field, const ResponseContact<double>& 
 }
 }  // namespace
 
-TEST_CASE("nonlinear finite elements: ellipsoid t1 and cube t6 at 4 mm") {
+TEST_CASE("nonlinear finite elements: ellipsoid_top and cube at 4 mm") {
   // A small solve mesh keeps the test short: the bound is wider than the 4 % of the full one.
   check_reference(
       test::ellipsoid_field(0.49, 260),
       {.place = V(0, 0.04, 0), .normal = V::UnitY(), .radius = 0.005, .displacement = V(0, -0.004, 0)},
-      test::truth_t1, test::truth_t1_force, 0.05);
+      test::truth_ellipsoid, test::truth_ellipsoid_force, 0.05);
   check_reference(
       test::block_field(V(0.1, 0.1, 0.1), 1e6, 0.49, 260),
       {.place = V(0, 0.1, 0), .normal = V::UnitY(), .radius = 0.01, .displacement = V(0, -0.004, 0)},
-      test::truth_t6, test::truth_t6_force, 0.06);
+      test::truth_cube, test::truth_cube_force, 0.06);
 }
 
-TEST_CASE("nonlinear finite elements: a ball on the ellipsoid, t8, felt through the contact solver") {
+TEST_CASE(
+    "nonlinear finite elements: a sphere on the ellipsoid (ball_ellipsoid), felt through the contact "
+    "solver") {
   const Ellipsoid<double> body({.axes = V(0.06, 0.04, 0.04)});
   const ResponseField field = test::ellipsoid_field(0.49, 260);
   const auto fitted =
       ball_response_map(field, body, {.radius = 0.015, .depth = 0.012, .spacing = field.mesh().length / 2});
   ContactSolver<Ellipsoid<double>, HertzMap<double>> solver({body, {}, fitted.map, {}, {}});
   double squares = 0;
-  for (const auto& [depth, force] : test::truth_t8_force) {
+  for (const auto& [depth, force] : test::truth_ball_force) {
     const double felt = solver.tick({Mat3<double>::Identity(), V(0, 0.04 - depth, 0)}).wrench.force.y();
-    squares += std::pow(felt / force - 1, 2) / double(std::size(test::truth_t8_force));
+    squares += std::pow(felt / force - 1, 2) / double(std::size(test::truth_ball_force));
   }
   MESSAGE("relative force error, rms ", std::sqrt(squares), "; worst fit ", fitted.worst_rms);
   CHECK(std::sqrt(squares) < 0.02);  // the goal

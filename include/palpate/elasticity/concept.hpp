@@ -4,12 +4,12 @@
 /// @file What a deformation model must offer: contacts in, vertices and normals out. Read this before writing
 /// one.
 ///
-/// | shipped                      | shape                                            | use it when                           |
-/// |------------------------------|--------------------------------------------------|---------------------------------------|
-/// | `BeamSkeletonDeformation`    | the paper's (V, VI): skeleton, then interpolation | the paper's look at the least cost    |
-/// | `HalfSpaceDeformation`       | elastic, in closed form: half-spaces in series   | a plausible shape without any set-up  |
-/// | `ResponseFieldDeformation`   | elastic, by boundary elements at set-up          | shape and force must be right         |
-/// | `NoDeformation`              | the undeformed one                               | absent: forces only                   |
+/// | shipped | shape | use it when |
+/// |---|---|---|
+/// | `BeamSkeletonDeformation` | the paper's (V, VI) | the paper's look at the least cost |
+/// | `HalfSpaceDeformation` | elastic: half-spaces in series | a plausible shape without any set-up |
+/// | `ResponseFieldDeformation` | elastic, by boundary elements at set-up | shape and force must be right |
+/// | `NoDeformation` | the undeformed one | absent: forces only |
 ///
 /// `DisplacementField` is the output stage that models share: displacements of corners to vertices in your
 /// buffer. Absent on purpose: volumetric meshes; only the surface is seen and touched.

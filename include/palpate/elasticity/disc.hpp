@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Loads that are spread over a disc on an elastic half-space, in closed form: bonded flat punch, Hertz's
-/// pressure, force dipole, bending and torsional couple. Every displacement is multiplied by 4 pi mu.
+/// @file Loads that are spread over a disc on an elastic half-space, in closed form: bonded flat punch,
+/// Hertz's pressure, force dipole, bending and torsional couple. Every displacement is multiplied by 4 pi mu.
 ///
-/// The flat punch's weight is 1/(2 pi a sqrt(a^2 - s^2)). With it, every harmonic function h(p, z) of the point
-/// force's solution (point_load.hpp) becomes (1/a) Im of its antiderivative in z, taken at z + i a: a point
-/// source at a complex depth. With q = z + i a, R = sqrt(p^2 + q^2), l = ln(R + q):
+/// The flat punch's weight is 1/(2 pi a sqrt(a^2 - s^2)). With it, every harmonic function h(p, z) of the
+/// point force's solution (point_load.hpp) becomes (1/a) Im of its antiderivative in z, taken at z + i a: a
+/// point source at a complex depth. With q = z + i a, R = sqrt(p^2 + q^2), l = ln(R + q):
 ///     1/R -> phi = Im l / a,   ln(R+z) -> L = Im(q l - R) / a,
 ///     z ln(R+z) - R -> X = Im((q^2/2 - p^2/4) l - 3 q R/4) / a
 ///     normal force:      u = f_n [ -z grad phi + (1 + (1-2 nu)) phi m - (1-2 nu) grad_p L ]
-///     tangential force:  u = 2 f phi - z grad_p d_f L + 2 nu grad_p d_f X + m [ -z d_f phi + (1-2 nu) d_f L ]
+///     tangential force:  u = 2 f phi - z grad_p d_f L + 2 nu grad_p d_f X
+///                            + m [ -z d_f phi + (1-2 nu) d_f L ]
 /// Hertz's weight 3 sqrt(a^2 - s^2)/(2 pi a^3) is an integral over discs; the dipole and the couples are
 /// derivatives of Hertz's field. Own derivation from [johnson1985], ch. 3; tested against direct integration.
 
@@ -50,8 +51,8 @@ template <SimdOrReal V>
 }
 }  // namespace detail
 
-/// A loaded disc of radius a, seen from the distance p off its axis and the depth z >= 0 [m]. S: a number or a
-/// SIMD vector of them; F: a number. Every field is 4 pi mu u = in_plane p + normal m + along t, with t the
+/// A loaded disc of radius a, seen from the distance p off its axis and the depth z >= 0 [m]. S: a number or
+/// a SIMD vector of them; F: a number. Every field is 4 pi mu u = in_plane p + normal m + along t, with t the
 /// tangential part of the load.
 template <class S, class F = S>
 class Disc {
@@ -105,7 +106,8 @@ class Disc {
             S{}};
   }
   /// Bending couple: normal forces with the moment sum x (f.m) = t, tp = t.p. Weight: minus the gradient of
-  /// Hertz's. Below b = 1 - 2 nu = 0.03 the in-plane part with b is left out: it is less than 1 % of the field.
+  /// Hertz's. Below b = 1 - 2 nu = 0.03 the in-plane part with b is left out: it is less than 1 % of the
+  /// field.
   [[nodiscard]] PALPATE_INLINE Field bending_couple(const S& tp, F nu) const noexcept {
     const F b = F(1) - F(2) * nu, s = F(3) / (a_ * a_ * a_);
     const S phi_p = hertz_phi_p(), phi_2 = s * (F(-0.5) * ww_.im - a_ * wwR_.re),
@@ -117,8 +119,8 @@ class Disc {
     }
     return u;
   }
-  /// Shear dipole: forces s p in the disc's plane, s symmetric without trace, of the moment sum f x^T = s / 2.
-  /// Weight: minus half the gradient of Hertz's. psp = p.s.p; `along` multiplies s p.
+  /// Shear dipole: forces s p in the disc's plane, s symmetric without trace, of the moment sum f x^T = s /
+  /// 2. Weight: minus half the gradient of Hertz's. psp = p.s.p; `along` multiplies s p.
   [[nodiscard]] PALPATE_INLINE Field shear_dipole(const S& psp, F nu) const noexcept {
     const F b = F(1) - F(2) * nu, s = F(3) / (a_ * a_ * a_);
     const C w3 = ww_ * w_, w4 = ww_ * ww_, w3R = w3 * iR_;
@@ -164,8 +166,8 @@ class Disc {
 };
 
 /// Depth z >= 0 [m] of the point r below a disc of radius a whose surface bends away from the tangent plane:
-/// below the plane of the disc's own edge, which for a quadric lies z (a/r)^2 below the tangent plane. The edge
-/// is at most `sagitta` deep: the side of a block lies below its top by all of z.
+/// below the plane of the disc's own edge, which for a quadric lies z (a/r)^2 below the tangent plane. The
+/// edge is at most `sagitta` deep: the side of a block lies below its top by all of z.
 [[nodiscard]] inline double edge_depth(const Vec3<double>& r, const Vec3<double>& m, double a,
                                        double sagitta = (std::numeric_limits<double>::max)()) noexcept {
   const double z = r.dot(m), near2 = (std::min)(1.0, a * a / (std::max)(r.squaredNorm(), 1e-300));

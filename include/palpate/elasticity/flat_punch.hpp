@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Rigid flat circular punch that is bonded to a half-space: its compliance, the mean over it, its force.
-/// Its field around it: disc.hpp.
+/// @file Rigid flat circular punch that is bonded to a half-space: its compliance, the mean over it, its
+/// force. Its field around it: disc.hpp.
 
 #include <palpate/elasticity/disc.hpp>
 

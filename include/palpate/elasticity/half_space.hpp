@@ -22,19 +22,19 @@ namespace palpate {
 ///
 ///     u(x) = sum_c K_c(x) P_c + B(x) Q + U + theta x (x - o),   Q = -sum_c (P_c, (x_c - o) x P_c)
 ///
-/// K_c is the field of a force on a stuck flat disc of the contact's radius, B that of force and moment on a
-/// disc in the place of the fixed region, both closed forms of the half-space (elasticity/disc.hpp); U
-/// and theta make u zero over the fixed region in the least squares' sense, and the forces P_c give each
-/// contact its displacement D_c, or are 0 where that would take a pull. Own derivation: what a body feels of
-/// a small contact, and of a small support, is the half-space's field; the far one sees force and moment only
+/// K_c is the field of a force on a bonded flat punch of the contact's radius, B that of force and moment on a
+/// disc in the place of the fixed region, both closed forms of the half-space (elasticity/disc.hpp); U and
+/// theta make u zero over the fixed region in the least squares' sense, and the forces P_c give each contact
+/// its displacement D_c, or are 0 where that would take a pull. Own derivation: what a body feels of a small
+/// contact, and of a small support, is the half-space's field; the far one sees force and moment only
 /// (Saint-Venant). What it leaves out is that the sides are free of traction: docs/accuracy.md says what that
 /// costs. Small strain; for large depths the response field has a second-order term.
 ///
-/// | symbol | name                        | unit | range                                                          |
-/// |--------|-----------------------------|------|----------------------------------------------------------------|
-/// | nu     | `Params::nu`                | -    | [0, 1/2]                                                       |
-/// | a      | `Params::smallest_radius`   | m    | > 0: of a contact with less area; otherwise a = sqrt(area/pi)  |
-/// |        | `fixed`                     |      | predicate on places: which vertices do not move                |
+/// | symbol | name | unit | range |
+/// |---|---|---|---|
+/// | nu | `Params::nu` | - | [0, 1/2] |
+/// | a | `Params::smallest_radius` | m | > 0: of a contact with less area; otherwise a = sqrt(area/pi) |
+/// |  | `fixed` |  | predicate on positions: which vertices do not move |
 ///
 /// Set-up reports nu and radius out of range, an empty mesh, vertices that do not exist or are not finite,
 /// and a fixed region without area or within a line. With the same contacts as in the last tick nothing is
@@ -184,7 +184,7 @@ class HalfSpaceDeformation {
     return true;
   }
 
-  // Forces over mu, base load and rigid motion. A tool cannot pull: contacts that would are let go, the
+  // Forces over mu, base load and rigid motion. A tool cannot pull: contacts that would are released, the
   // strongest first. So one that appears where others have already moved the surface away changes nothing.
   // False: no contact is left.
   bool solve() noexcept {

@@ -5,7 +5,8 @@
 /// displacement is multiplied by 4 pi mu; divide by it at the end.
 ///
 ///     u = f/R + r (f.r)/R^3 + (1-2 nu) v,
-///     v = f_n (m/R - p/(R(R+z))) + f_t/(R+z) - p (f_t.p)/(R (R+z)^2) + m (f_t.p)/(R(R+z)),   div v = -2 f.r/R^3
+///     v = f_n (m/R - p/(R(R+z))) + f_t/(R+z) - p (f_t.p)/(R (R+z)^2) + m (f_t.p)/(R(R+z)),
+///     div v = -2 f.r/R^3
 ///
 /// | symbol    | name                                                           | unit |
 /// |-----------|----------------------------------------------------------------|------|
@@ -14,7 +15,8 @@
 /// | r; R      | from the force to the point; its length                        | m    |
 /// | z, p      | depth r.m of the point; r - z m                                | m    |
 ///
-/// The first part is twice Kelvin's solution at nu = 1/2 and does not contain m. Source: [johnson1985], ch. 3.
+/// The first part is twice Kelvin's solution at nu = 1/2 and does not contain m. Source: [johnson1985], ch.
+/// 3.
 
 #include <palpate/core/vector.hpp>
 

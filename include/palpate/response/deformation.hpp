@@ -142,8 +142,7 @@ class ResponseFieldDeformation {
       if (place != nullptr)
         place->set_four(vertex + slot, at.x, at.y, at.z);
       else
-        to.put_apart([this, slot](std::size_t k) { return vertex[slot + k]; }, at.x.native[0], at.y.native[0],
-                     at.z.native[0]);
+        to.put_apart([this, slot](std::size_t k) { return vertex[slot + k]; }, at.x, at.y, at.z);
     }
   };
 

@@ -97,8 +97,7 @@ class ResponseTick {
     const std::uint32_t* vertex;
     PALPATE_INLINE void operator()(std::size_t slot,
                                    const detail::SimdVec3<detail::Simd4>& u) const noexcept {
-      to.put_apart([this, slot](std::size_t k) { return vertex[slot + k]; }, u.x.native[0], u.y.native[0],
-                   u.z.native[0]);
+      to.put_apart([this, slot](std::size_t k) { return vertex[slot + k]; }, u.x, u.y, u.z);
     }
   };
 

@@ -2,18 +2,18 @@
 #pragma once
 
 /// @file Constants of the response field's second order in depth. Formulas: docs/response_field.md, "Second
-/// order in depth"; they are applied in tick/second_order_loads.hpp, tick/near_field.hpp, tick/pressed_sphere.hpp
-/// and tick/rotation_correction.hpp.
+/// order in depth"; they are applied in tick/second_order_loads.hpp, tick/near_field.hpp,
+/// tick/pressed_sphere.hpp and tick/rotation_correction.hpp.
 ///
-/// | symbol           | name                                                                              | unit |
-/// |------------------|-----------------------------------------------------------------------------------|------|
-/// | d; d_n, d_t      | displacement of the patch; its normal and tangential part                         | m    |
-/// | F, mu, a         | force; shear modulus; radius of the patch                                         | N, Pa, m |
-/// | delta_n, delta_t | local indentation: displacement of a half-space by the same force                 | m    |
-/// | w_n, w_t         | d - delta, the regular part: by how much the body as a whole moves                | m    |
-/// | s                | slope of w_n under the patch; for a rotated tool the slope that it gives the patch | -    |
-/// | beta, b          | delta_n / a; 1 - 2 nu                                                             | -    |
-/// | d_H, R           | a sphere's indentation of the half-space; its radius                              | m    |
+/// | symbol | name | unit |
+/// |---|---|---|
+/// | d; d_n, d_t | displacement of the patch; its normal and tangential part | m |
+/// | F, mu, a | force; shear modulus; radius of the patch | N, Pa, m |
+/// | delta_n, delta_t | local indentation: displacement of a half-space by the same force | m |
+/// | w_n, w_t | d - delta, the regular part: by how much the body as a whole moves | m |
+/// | s | slope of w_n under the patch; for a rotated tool the slope that it gives the patch | - |
+/// | beta, b | delta_n / a; 1 - 2 nu | - |
+/// | d_H, R | a sphere's indentation of the half-space; its radius | m |
 ///
 /// Constants are those of nu = 1/2; `at(nu)` gives what is used. All are dimensionless, were fitted on
 /// neo-Hookean finite elements and rounded, and serve every body. The cases are those of docs/accuracy.md.

@@ -166,7 +166,7 @@ TEST_CASE(
   Drawn drawn(test::ellipsoid_mesh(axes, 40), cap);
   drawn.write({pressed<double>(V(0, 0.04, 0), V::UnitY(), V(0, -0.004, 0), 0.005)});
   double error = 0, norm = 0;
-  for (const test::TruthVertex& t : test::truth_t1) {
+  for (const test::TruthVertex& t : test::truth_ellipsoid) {
     const V x(t.x[0], t.x[1], t.x[2]), exact(t.u[0], t.u[1], t.u[2]);
     if ((x - V(0, 0.04, 0)).norm() < 0.006) continue;  // too steep there to ask the nearest vertex
     std::size_t nearest = 0;
@@ -177,7 +177,7 @@ TEST_CASE(
   }
   CHECK(std::sqrt(error / norm) < 0.2);
   const double mu = 1.5e6 / 2 / 1.49;
-  CHECK_RELATIVE(mu * drawn.model.forces()[0].norm(), test::truth_t1_force, 0.1);
+  CHECK_RELATIVE(mu * drawn.model.forces()[0].norm(), test::truth_ellipsoid_force, 0.1);
 }
 
 TEST_CASE("half-spaces: the field is continuous while a contact wanders") {

@@ -54,7 +54,7 @@ TEST_CASE("box: rigid modes and uniform strain meet the discrete equation, nu = 
   }
 }
 
-TEST_CASE("bar held at its end and pulled, nu = 0: the exact linear displacement") {
+TEST_CASE("bar clamped at its end and pulled, nu = 0: the exact linear displacement") {
   const SolveMesh m = solve_mesh(test::box_mesh(V(1, 3, 1), 6), 1e-9, 160);
   BoundaryElements bem(m, 0.0, 1);
   // mu = 1 and nu = 0: E = 2; traction 2 at the top stretches by 1.
@@ -110,9 +110,10 @@ TEST_CASE("set-up refuses an open mesh, an empty fixed region, nu out of range")
 }
 
 TEST_CASE(
-    "bar 1:6 held at its end: bent, Timoshenko's deflection; twisted, Saint-Venant's rate, with the observed "
+    "bar 1:6 clamped at its end: bent, Timoshenko's deflection; twisted, Saint-Venant's rate, with the "
+    "observed "
     "order") {
-  // nu = 0: the held end does not disturb the beam's stress.
+  // nu = 0: the clamped end does not disturb the beam's stress.
   const double length = 6, E = 2, mu = 1;
   struct Errors {
     double bent, twisted;

@@ -44,7 +44,7 @@ struct Cube {
 };
 }  // namespace
 
-TEST_CASE("touch mesh: closed, unfolded; only edges within half their distance to a crease are whole") {
+TEST_CASE("load mesh: closed, unfolded; only edges within half their distance to a crease are whole") {
   const SolveMesh solve = solve_mesh(cube_mesh(), 1e-6, 150);
   const TouchMesh touch = LoadPlaces(solve).touch_mesh();
   const auto node = [&](std::uint32_t k) { return touch.nodes()[k]; };
@@ -82,7 +82,7 @@ TEST_CASE("touch mesh: closed, unfolded; only edges within half their distance t
   CHECK(uncut > 0);
 }
 
-TEST_CASE("touch mesh: where no free crease is, loads are put at the nodes alone") {
+TEST_CASE("load mesh: where no free crease is, loads are put at the nodes alone") {
   const SolveMesh solve = solve_mesh(test::ellipsoid_mesh(V(0.05, 0.04, 0.03), 10), -0.025, 150);
   const TouchMesh touch = LoadPlaces(solve).touch_mesh();
   for (std::size_t k = 0; k < touch.solved(); ++k)

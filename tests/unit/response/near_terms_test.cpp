@@ -79,7 +79,7 @@ TEST_CASE("around a disc on a half-space, to 1.2 radii deep: finite elements") {
   }
 }
 
-TEST_CASE("near terms are held beyond two radii and where the disc pulls, and go there gradually") {
+TEST_CASE("near terms are bounded beyond two radii and where the disc pulls, and go there gradually") {
   const std::vector<V> points{V(1.3, 0, 0), V(0, 0, 2)};
   const auto drawn = [&points](double depth) { return rubber().beyond_linear(points, V(0, -depth, 0), 1); };
   double largest = 0;

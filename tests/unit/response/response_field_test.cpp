@@ -35,7 +35,7 @@ TEST_CASE("large block: flat punch and Hertz tend to the half-space, nu = 0, 0.3
   }
 }
 
-TEST_CASE("field: patch moves by d, held vertices rest, reciprocity, forces of two contacts, refinement") {
+TEST_CASE("field: patch moves by d, fixed vertices rest, reciprocity, forces of two contacts, refinement") {
   const ResponseField field = test::ellipsoid_field(0.5, 140);
   ResponseTick<2> tick(field);
   const V n2 = V(0.03 / 0.0036, 0.034641016151377546 / 0.0016, 0).normalized();

@@ -14,7 +14,7 @@ const ResponseField& cube() {
                                    {.E = 1e4, .nu = 0.49, .mesh = {.vertices = 200}});
   return field;
 }
-// A field at the solve mesh's vertices, by coordinate.
+// A field at the boundary element mesh's vertices, by coordinate.
 template <class Of>
 std::vector<float> at_vertices(const ResponseField& field, const Of& of) {
   std::vector<float> out(3 * field.stride(), 0.f);

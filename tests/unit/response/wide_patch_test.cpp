@@ -10,7 +10,7 @@ using namespace palpate;
 using V = Vec3<double>;
 using Contact = ResponseContact<double>;
 
-// Block of 80 x 50 x 60 mm, x and z from the middle, held at its base.
+// Block of 80 x 50 x 60 mm, x and z from the middle, fixed at its base.
 const ResponseField& block() {
   static const ResponseField field = [] {
     MeshData<double> mesh = test::box_mesh(V(0.08, 0.05, 0.06), 10);
@@ -92,5 +92,5 @@ TEST_CASE(
   const V exact(-2.67347, -1.8845, 0);  // Taylor-Hood tetrahedra; 1.2 % too high where it was compared
   MESSAGE("force ", F.transpose(), ", off by ", (F - exact).norm() / exact.norm());
   CHECK((F - exact).norm() <
-        0.02 * exact.norm());  // held in the mean only: 4 %, with 200 to 600 vertices alike
+        0.02 * exact.norm());  // bonded in the mean only: 4 %, with 200 to 600 vertices alike
 }

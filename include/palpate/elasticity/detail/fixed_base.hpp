@@ -36,13 +36,13 @@ class FixedBase {
   /// line.
   template <Real S, class Fixed>
   FixedBase(const MeshData<S>& mesh, const Fixed& fixed, double nu, const char* name) : nu_(nu) {
-    std::vector<V> held;
+    std::vector<V> position;
     std::vector<double> area;
     V outward = V::Zero();
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-      if (!is_finite(mesh.vertices[v])) fail_at(name, "place must be finite", "mesh vertex", v);
+      if (!is_finite(mesh.vertices[v])) fail_at(name, "position must be finite", "mesh vertex", v);
       fixed_.push_back(fixed(mesh.vertices[v]) ? 1 : 0);
-      held.push_back(mesh.vertices[v].template cast<double>());
+      position.push_back(mesh.vertices[v].template cast<double>());
       area.push_back(0);
     }
     double total = 0;
@@ -53,8 +53,8 @@ class FixedBase {
         count += fixed_[v];
       }
       if (count < 3) continue;
-      const V &a = held[mesh.triangles[t][0]], &b = held[mesh.triangles[t][1]],
-              &c = held[mesh.triangles[t][2]];
+      const V &a = position[mesh.triangles[t][0]], &b = position[mesh.triangles[t][1]],
+              &c = position[mesh.triangles[t][2]];
       const V n = 0.5 * (b - a).cross(c - a);
       for (const std::uint32_t v : mesh.triangles[t]) area[v] += n.norm() / 3;
       total += n.norm();
@@ -65,7 +65,7 @@ class FixedBase {
     middle_ /= total;
     radius_ = std::sqrt(total / std::numbers::pi);
     inward_ = unit_or<double>(-outward, V::UnitY());
-    sample(held, area);
+    sample(position, area);
     set_up_fit(name);
   }
 
@@ -88,11 +88,11 @@ class FixedBase {
   [[nodiscard]] V field(const V& y, const Screw& load) const noexcept {
     const V f = load.head<3>(), moment = load.tail<3>(), p = tangential<double>(y, inward_);
     const double fn = f.dot(inward_);
-    const V along = f - fn * inward_, tilt = inward_.cross(moment);
+    const V along = f - fn * inward_, couple = inward_.cross(moment);
     const Disc<double> from = disc(y);
-    const auto u = from.flat_punch(fn, along.dot(p), nu_), w = from.bending_couple(tilt.dot(p), nu_);
+    const auto u = from.flat_punch(fn, along.dot(p), nu_), w = from.bending_couple(couple.dot(p), nu_);
     return ((u.in_plane + w.in_plane) * p + (u.normal + w.normal) * inward_ + u.along * along +
-            w.along * tilt + from.torsional_couple() * moment.dot(inward_) * inward_.cross(p)) /
+            w.along * couple + from.torsional_couple() * moment.dot(inward_) * inward_.cross(p)) /
            (4 * std::numbers::pi);
   }
   /// The rigid motion nearest to a field over the region; `at(y)` with y from the middle.
@@ -118,21 +118,21 @@ class FixedBase {
   // meshes have many that are as far: the first one counts, and a rounding decides nothing, so that a turned
   // body has the same.
   void sample(const std::vector<V>& vertex, const std::vector<double>& area) {
-    std::vector<V> held;
+    std::vector<V> position;
     std::vector<double> share;
     for (std::size_t v = 0; v < area.size(); ++v) {
       if (!(area[v] > 0)) continue;
-      held.push_back(vertex[v] - middle_);
+      position.push_back(vertex[v] - middle_);
       share.push_back(area[v]);
     }
-    std::vector<double> gap(held.size(), (std::numeric_limits<double>::max)());
-    std::vector<std::size_t> nearest(held.size(), 0);
-    const std::size_t most = (std::min)(held.size(), std::size_t(48));
+    std::vector<double> gap(position.size(), (std::numeric_limits<double>::max)());
+    std::vector<std::size_t> nearest(position.size(), 0);
+    const std::size_t most = (std::min)(position.size(), std::size_t(48));
     constexpr double alike = 1 - 1e-9;
     for (std::size_t next = 0; sample_.size() < most;) {
-      sample_.push_back(held[next]);
-      for (std::size_t i = 0; i < held.size(); ++i) {
-        const double square = (held[i] - held[next]).squaredNorm();
+      sample_.push_back(position[next]);
+      for (std::size_t i = 0; i < position.size(); ++i) {
+        const double square = (position[i] - position[next]).squaredNorm();
         if (square < alike * gap[i]) gap[i] = square, nearest[i] = sample_.size() - 1;
       }
       const double farthest = alike * *std::max_element(gap.begin(), gap.end());
@@ -140,7 +140,7 @@ class FixedBase {
           std::find_if(gap.begin(), gap.end(), [&](double g) { return g >= farthest; }) - gap.begin());
     }
     weight_.assign(sample_.size(), 0.0);
-    for (std::size_t i = 0; i < held.size(); ++i) weight_[nearest[i]] += share[i];
+    for (std::size_t i = 0; i < position.size(); ++i) weight_[nearest[i]] += share[i];
   }
 
   void set_up_fit(const char* name) {

@@ -12,14 +12,14 @@
 
 namespace palpate::detail {
 
-/// Makes the eigenvalues lambda of symmetric C (of fixed size: no heap) max(|lambda|, min), min > 0; larger ones
-/// keep their value. Continuous in C. A true eigenvalue is positive: one far below 0 is wrong by at least its
-/// size, so that mode may well be as compliant as that.
+/// Makes the eigenvalues lambda of symmetric C (of fixed size: no heap) max(|lambda|, min), min > 0; larger
+/// ones keep their value. Continuous in C. A true eigenvalue is positive: one far below 0 is wrong by at
+/// least its size, so that mode may well be as compliant as that.
 ///
-/// Jacobi's rotations until the sum of squares off the diagonal is 1e-18 of that on it. 4 to 6 sweeps were met;
-/// 10 is the limit, for a matrix that is not finite. A rotation is left out where its entry is below that bound
-/// alone. Eigen's solver is as fast for 3 to 6 rows, but costs each including file 13 s of gcc 12. Source:
-/// [golub2013], 8.5.
+/// Jacobi's rotations until the sum of squares off the diagonal is 1e-18 of that on it. 4 to 6 sweeps were
+/// met; 10 is the limit, for a matrix that is not finite. A rotation is left out where its entry is below
+/// that bound alone. Eigen's solver is as fast for 3 to 6 rows, but costs each including file 13 s of gcc 12.
+/// Source: [golub2013], 8.5.
 template <class M>
 void bound_below(M& C, double min) noexcept {
   constexpr Eigen::Index n = M::RowsAtCompileTime;
@@ -69,8 +69,8 @@ void bound_below(M& C, double min) noexcept {
   return a > 0 && minor > 0 && det > 0;
 }
 
-/// Factor (1 + r^8)^(-1/8), r^2 = size2 / max2 >= 0, that keeps a vector of squared length size2 below max2 and
-/// leaves a small one alone. The power 8: within 1 % of 1 up to r = 0.7, of 1/r from r = 1.4 on.
+/// Factor (1 + r^8)^(-1/8), r^2 = size2 / max2 >= 0, that keeps a vector of squared length size2 below max2
+/// and leaves a small one alone. The power 8: within 1 % of 1 up to r = 0.7, of 1/r from r = 1.4 on.
 [[nodiscard]] inline double smooth_limit(double size2, double max2) noexcept {
   const double r2 = size2 / (max2 + (std::numeric_limits<double>::min)()), r8 = r2 * r2 * r2 * r2;
   // Most are small, and roots take their time: the binomial series, to the last digit below 1e-3.

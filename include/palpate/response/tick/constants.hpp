@@ -1,39 +1,41 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Chosen constants of a response field's tick: bounds, ranges of validity, transitions. None is fitted;
-/// those that are fitted are in response/second_order.hpp.
+/// @file Chosen constants of a response field's tick: bounds, ranges of validity, transitions. None is
+/// fitted; those that are fitted are in response/second_order.hpp.
 ///
-/// Bounds keep force and field finite and continuous on coarse meshes, thin parts and coinciding contacts; where
-/// the mesh resolves the body they hardly act (docs/response_field.md, "Bounds").
+/// Bounds keep force and field finite and continuous on coarse meshes, thin parts and coinciding contacts;
+/// where the mesh resolves the body they hardly act (docs/response_field.md, "Bounds").
 ///
-/// Lengths are in patch radii a, displacements in the contact's displacement d, compliances in the half-space's,
-/// unless a unit stands there. "Half" as a bound of a vector u means smooth_limit(u^2, (d / 2)^2), and so on.
+/// Lengths are in patch radii a, displacements in the contact's displacement d, compliances in the
+/// half-space's, unless a unit stands there. "Half" as a bound of a vector u means smooth_limit(u^2, (d /
+/// 2)^2), and so on.
 
 namespace palpate::detail::tick {
 
 // Compliance of contacts (contact_system.hpp), of the half-space's smaller one.
 inline constexpr double min_compliance = 0.1;           ///< of a mode of one contact
 inline constexpr double min_coupled_compliance = 0.05;  ///< of a mode of several contacts
-/// Of a mode of several contacts, of the sum of all compliances: a tenth of a per mille, to which no mesh knows
-/// it. On a plate that bends easily two contacts would else throw each other out.
+/// Of a mode of several contacts, of the sum of all compliances: a tenth of a per mille, to which no mesh
+/// knows it. On a plate that bends easily two contacts would else throw each other out.
 inline constexpr double min_resolved_compliance = 1e-4;
 /// tr(S_i K S_j K^T) of a coupling K: at most 3 by energy, as all singular values are below 1.
 inline constexpr double max_coupling = 3;
 
-// Series in depth (linear_loads.hpp, second_order_loads.hpp): a displacement by loads beside the force that is
-// more than half of d, or that asks for more than half of the force, means that the series has ended.
+// Series in depth (linear_loads.hpp, second_order_loads.hpp): a displacement by loads beside the force that
+// is more than half of d, or that asks for more than half of the force, means that the series has ended.
 inline constexpr double max_load_displacement2 = 0.25;  ///< (1/2)^2 of d^2
 inline constexpr double max_load_force2 = 0.25;         ///< (1/2)^2 of P^2
-/// Part of a compliance that a bonded patch's dipole and couples may take, squared: a half. In theory less than
-/// all of it.
+/// Part of a compliance that a bonded patch's dipole and couples may take, squared: a half. In theory less
+/// than all of it.
 inline constexpr double max_bonded_part2 = 0.25;
 inline constexpr double max_depth = 2;  ///< d_n / a and beta: the deepest reference
 /// The radial dipole and the near terms take up to this many half-space's forces for d; the universal forces
 /// take one. Chosen on the slabs, whose force is 1.4 times the half-space's.
 inline constexpr double max_force_ratio = 2;
 
-// Torsional stiffness (linear_loads.hpp): range of H a, H the mean curvature, for which its first order is used.
+// Torsional stiffness (linear_loads.hpp): range of H a, H the mean curvature, for which its first order is
+// used.
 inline constexpr double min_curvature = -0.5, max_curvature = 1;
 
 // Wide patches (patch_moments.hpp), by a over the length of the boundary element mesh's edges.

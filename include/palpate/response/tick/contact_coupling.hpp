@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file What one contact does to the patch of another: mean displacements by unit forces and by unit loads. Per
-/// tick.
+/// @file What one contact does to the patch of another: mean displacements by unit forces and by unit loads.
+/// Per tick.
 ///
 ///     K_ij = u_near(x_i - x_j; disc of radius sqrt(a_i^2 + a_j^2)) + sum_kl g_ik g_jl w_kl
 ///
-/// The near field of the force on patch j, averaged over patch i, is that of a disc with the square sum of the
-/// radii: exact to second moments, and never singular when patches meet. g: the contacts' weights at the nodes.
+/// The near field of the force on patch j, averaged over patch i, is that of a disc with the square sum of
+/// the radii: exact to second moments, and never singular when patches meet. g: the contacts' weights at the
+/// nodes.
 
 #include <palpate/response/tick/placement.hpp>
 
@@ -21,14 +22,16 @@ namespace palpate::detail {
   return {dipole, couple.dot(t1), couple.dot(n.cross(t1))};
 }
 
-/// The disc of radius a that stands for a mean over a patch, seen at r from contact j, p along it. Such a mean has
-/// no edge at a, where a disc's own field has an infinite slope: it is taken a twentieth of a deeper.
+/// The disc of radius a that stands for a mean over a patch, seen at r from contact j, p along it. Such a
+/// mean has no edge at a, where a disc's own field has an infinite slope: it is taken a twentieth of a
+/// deeper.
 [[nodiscard]] inline Disc<double> mean_disc(const PlacedContact& cj, const Vec3<double>& r,
                                             const Vec3<double>& p, double a) noexcept {
   return {p.squaredNorm(), std::hypot(edge_depth(r, cj.tool.m, a, cj.sagitta), tick::mean_disc_depth * a), a};
 }
 
-/// Near field at r from contact j of unit forces on a disc of radius a, times mu; columns: their directions [1/m].
+/// Near field at r from contact j of unit forces on a disc of radius a, times mu; columns: their directions
+/// [1/m].
 [[nodiscard]] inline Mat3<double> near_of_forces(const PlacedContact& cj, const Vec3<double>& r, double a,
                                                  double nu) noexcept {
   constexpr double scale = 1 / (4 * std::numbers::pi);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file The contacts of one tick of a response field as a linear system: which force moves which contact by how
-/// much. Per tick.
+/// @file The contacts of one tick of a response field as a linear system: which force moves which contact by
+/// how much. Per tick.
 ///
-///     C P = d + C_near q - w_2,   C_ii = C_near + w_ii,   C_ij = u_near(sqrt(a_i^2 + a_j^2)) + w_ij,   F = mu P
+///     C P = d + C_near q - w_2,   C_ii = C_near + w_ii,   C_ij = u_near(sqrt(a_i^2 + a_j^2)) + w_ij
 ///
 /// | symbol | name                                                                              | unit   |
 /// |--------|-----------------------------------------------------------------------------------|--------|
@@ -12,8 +12,9 @@
 /// | w      | regular part of the Green's function, times mu                                    | 1/m    |
 /// | q, w_2 | second order in depth: universal forces, displacement by the loads beside the force | m^2, m |
 ///
-/// Stages of a contact: stages.hpp. Where the boundary element mesh does not resolve the body, a mode of the system
-/// may be too stiff or even pull: its compliance is bounded from below, continuously (bounded_compliance.hpp).
+/// Stages of a contact: stages.hpp. Where the boundary element mesh does not resolve the body, a mode of the
+/// system may be too stiff or even pull: its compliance is bounded from below, continuously
+/// (bounded_compliance.hpp).
 
 #include <palpate/core/cholesky.hpp>
 #include <palpate/response/contact_types.hpp>
@@ -59,8 +60,8 @@ class ContactSystem {
     construct(placed_[c], [&] { return place_contact(*field_, tool); });
   }
 
-  /// All further stages of the first `count` contacts, all placed: first by the forces alone; they give the loads
-  /// beside them, and those the forces again.
+  /// All further stages of the first `count` contacts, all placed: first by the forces alone; they give the
+  /// loads beside them, and those the forces again.
   void solve(std::size_t count) noexcept {
     std::array<double, Capacity> activation, wide;
     for (std::size_t i = 0; i < count; ++i) activation[i] = 1, wide[i] = placed_[i].wide;
@@ -99,9 +100,9 @@ class ContactSystem {
   /// Force that the tool exerts in contact c / mu.
   [[nodiscard]] Vec3<double> force(std::size_t c) const noexcept { return solved_[c].P + second_[c].extra; }
 
-  /// Torque of the tool on patch i of `count` about its middle where it has moved to, / mu: the felt bending couple,
-  /// and the couple that keeps the patch from rotating about m with w, of which the field knows nothing. That takes
-  /// less than all of a compliance: at most half where a patch is wide for a thin part.
+  /// Torque of the tool on patch i of `count` about its middle where it has moved to, / mu: the felt bending
+  /// couple, and the couple that keeps the patch from rotating about m with w, of which the field knows
+  /// nothing. That takes less than all of a compliance: at most half where a patch is wide for a thin part.
   [[nodiscard]] Vec3<double> torque(std::size_t i, std::size_t count) const noexcept {
     const PlacedContact& c = placed_[i];
     const double stiffness = torsional_stiffness(*field_, c, bonded_[i].activation);
@@ -130,9 +131,9 @@ class ContactSystem {
                              : second_[i].felt_couple;
   }
 
-  // What contacts do to each other. By energy at most their own compliances: with K = L_i N L_j^T, C = L L^T, all
-  // singular values of N are below 1, so |N|^2 = tr(S_i K S_j K^T) < 3. A K that is t times too large is wrong by as
-  // much, for the mesh does not resolve it, and counts as 1/t of it.
+  // What contacts do to each other. By energy at most their own compliances: with K = L_i N L_j^T, C = L L^T,
+  // all singular values of N are below 1, so |N|^2 = tr(S_i K S_j K^T) < 3. A K that is t times too large is
+  // wrong by as much, for the mesh does not resolve it, and counts as 1/t of it.
   void couple(std::size_t count) noexcept {
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t j = 0; j < i; ++j) {
@@ -146,10 +147,11 @@ class ContactSystem {
       }
   }
 
-  // Activation of contacts. One comes in with d = 0 where deeper ones have moved the surface by u: bonded there it
-  // would pull. So it is active by what it has left to do, 1 - u.d/d^2, wholly from a quarter on; and not while d is
-  // small against u, wherever that points. Deeper ones count, wholly from twice the depth on: of two alike neither
-  // releases the other. As it comes in, the moments of the others' patches are released (PatchMoments).
+  // Activation of contacts. One comes in with d = 0 where deeper ones have moved the surface by u: bonded
+  // there it would pull. So it is active by what it has left to do, 1 - u.d/d^2, wholly from a quarter on;
+  // and not while d is small against u, wherever that points. Deeper ones count, wholly from twice the depth
+  // on: of two alike neither releases the other. As it comes in, the moments of the others' patches are
+  // released (PatchMoments).
   void activate(std::size_t count, std::array<double, Capacity>& activation,
                 std::array<double, Capacity>& wide) noexcept {
     constexpr double tiny = (std::numeric_limits<double>::min)();
@@ -171,8 +173,8 @@ class ContactSystem {
         if (i != j) wide[i] *= 1 - activation[j];
   }
 
-  // d of contact i less what the rotation of the tools moves its patch: its own, and the others' torsion, which they
-  // feel at once; their couples come with the other loads.
+  // d of contact i less what the rotation of the tools moves its patch: its own, and the others' torsion,
+  // which they feel at once; their couples come with the other loads.
   [[nodiscard]] Vec3<double> linear_rhs(std::size_t i, std::size_t count) const noexcept {
     Vec3<double> rhs = placed_[i].tool.d;
     for (std::size_t j = 0; j < count; ++j) {

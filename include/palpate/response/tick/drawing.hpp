@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file From the vertices of the boundary element mesh to those of a display, under solved contacts. Per tick.
+/// @file From the vertices of the boundary element mesh to those of a display, under solved contacts. Per
+/// tick.
 ///
-/// The field is quadratic over the mesh's triangles within 2.5 edges of a contact, elsewhere linear between raised
-/// vertices (mid_edge_correction.hpp); within one edge of a patch the contact's own near field is taken at the vertex
-/// itself instead of its interpolant.
+/// The field is quadratic over the mesh's triangles within 2.5 edges of a contact, elsewhere linear between
+/// raised vertices (mid_edge_correction.hpp); within one edge of a patch the contact's own near field is
+/// taken at the vertex itself instead of its interpolant.
 
 #include <palpate/response/response_display.hpp>
 #include <palpate/response/tick/mid_edge_correction.hpp>
@@ -15,7 +16,8 @@
 
 namespace palpate::detail {
 
-/// What is drawn: contacts, and their near fields at the mesh's vertices, one contact after the other, by coordinate.
+/// What is drawn: contacts, and their near fields at the mesh's vertices, one contact after the other, by
+/// coordinate.
 struct DrawnContacts {
   std::span<const DrawnContact> contact;
   const float* own;
@@ -32,7 +34,7 @@ class ResponseDrawing {
         close_(padded<Simd4>(field.mesh().triangles.size())),
         corrections_(field.bends(), field.stride()) {}
 
-  /// `total`: the field at the solve mesh's vertices, by coordinate.
+  /// `total`: the field at the boundary element mesh's vertices, by coordinate.
   void read(const float* total, const DrawnContacts& contacts) noexcept {
     const std::size_t n = field_->stride();
     for (std::size_t v = 0; v < n; v += Simd4::size())
@@ -89,7 +91,7 @@ class ResponseDrawing {
     return close_[span] > 0 && !field_->mesh().fixed_triangle[display.spans()[span].triangle];
   }
 
-  // Linear over one triangle of the solve mesh: x, y, z at corner 0, and along the edges from it.
+  // Linear over one triangle of the boundary element mesh: x, y, z at corner 0, and along the edges from it.
   struct Linear {
     Simd4 at0, edge1, edge2;
     Linear() = default;
@@ -217,8 +219,8 @@ class ResponseDrawing {
     });
   }
 
-  // The patch moves by d and rotates with the tool, as far as the contact is active; beneath a sphere the surface lies
-  // on it.
+  // The patch moves by d and rotates with the tool, as far as the contact is active; beneath a sphere the
+  // surface lies on it.
   template <class V>
   static void follow(const DrawnContact& c, const SimdVec3<V>& at, float reach, SimdVec3<V>& u) noexcept {
     const NearField& near = c.near;
@@ -235,7 +237,8 @@ class ResponseDrawing {
       }
       return;
     }
-    // Over the last fiftieth of the radius to the field outside: a vertex that comes in moves fast, and does not jump.
+    // Over the last fiftieth of the radius to the field outside: a vertex that comes in moves fast, and does
+    // not jump.
     constexpr float per_edge = 1 / tick::patch_edge;
     const Vec3<float> d = c.tool.d.template cast<float>();
     const V inside = clamp(V(1.f + per_edge - per_edge / near.a * sqrt(r2)), 0.f, 1.f) * near.activation;

@@ -3,7 +3,7 @@
 
 /// @file The field of solved contacts at the vertices of the boundary element mesh. Per tick.
 ///
-///     u = f (sum_c [sum_k (g_k P + A q_k) . w_k + share sum_k (loads beside the force) . w_k + u_near,c] + q)
+///     u = f (sum_c [sum_k (g_k P + A q_k) . w_k + share sum_k (other loads) . w_k + u_near,c] + q)
 ///
 /// | symbol | name                                                                              |
 /// |--------|-----------------------------------------------------------------------------------|
@@ -67,7 +67,8 @@ class FieldSum {
     if (carried < 1) drawn_[c].near = drawn_[c].near.scaled(static_cast<float>(carried));
     add_near(c);
   }
-  // Influence functions of the force and of a wide patch's moments. Returns the part of the force that is carried.
+  // Influence functions of the force and of a wide patch's moments. Returns the part of the force that is
+  // carried.
   double add_force(const ContactSystem<Capacity>& contacts, std::size_t c) noexcept {
     const PlacedContact& placed = contacts.placed(c);
     const PatchMoments& moments = contacts.bonded(c).moments;
@@ -93,8 +94,8 @@ class FieldSum {
     for (auto node : patch_) weight_[node] = 0;
     return carried;
   }
-  // Influence functions of the loads beside the force. Where the mesh does not resolve them they can be of any size: at
-  // most about 2 d.
+  // Influence functions of the loads beside the force. Where the mesh does not resolve them they can be of
+  // any size: at most about 2 d.
   void add_loads(const ContactSystem<Capacity>& contacts, std::size_t c) noexcept {
     const PlacedContact& placed = contacts.placed(c);
     const SecondOrderContact& loads = contacts.second(c);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Linear loads of a contact beside its force: what bonds its patch, and what the tool's rotation does to
-/// it. Per tick.
+/// @file Linear loads of a contact beside its force: what bonds its patch, and what the tool's rotation does
+/// to it. Per tick.
 ///
 /// A bonded patch neither spreads nor bends. For nu < 1/2 a flat punch under a force would do both; a force
-/// dipole and a bending couple prevent it, in the mean that the loads' energy knows. And where the regular part w
-/// spreads and bends the surface beneath the patch, the half-space's loads for that spread and slope prevent it,
-/// as far as PatchMoments does not: for a narrow patch the moments of w are w's slopes.
+/// dipole and a bending couple prevent it, in the mean that the loads' energy knows. And where the regular
+/// part w spreads and bends the surface beneath the patch, the half-space's loads for that spread and slope
+/// prevent it, as far as PatchMoments does not: for a narrow patch the moments of w are w's slopes.
 
 #include <palpate/response/tick/placement.hpp>
 
@@ -76,8 +76,9 @@ struct MovedByLoads {
 ///
 ///     16 a^3 / (3 (1 + 9 H a / (4 pi)))
 ///
-/// H: mean curvature, from the mean depth H a^2 / 2 of the patch's edge. A bent surface has less material around
-/// the patch to shear; the factor is its first order (docs/response_field.md). Times the contact's activation.
+/// H: mean curvature, from the mean depth H a^2 / 2 of the patch's edge. A bent surface has less material
+/// around the patch to shear; the factor is its first order (docs/response_field.md). Times the contact's
+/// activation.
 [[nodiscard]] inline double torsional_stiffness(const ResponseField& field, const PlacedContact& c,
                                                 double activation) noexcept {
   const double a = c.tool.a,
@@ -96,8 +97,8 @@ struct MovedByLoads {
   return u;
 }
 
-/// Loads by which the tool rotates its patch, and the displacement of the patch by them: through w, and, for nu <
-/// 1/2, through the half-space, by reciprocity with the couple of a bonded patch under a force.
+/// Loads by which the tool rotates its patch, and the displacement of the patch by them: through w, and, for
+/// nu < 1/2, through the half-space, by reciprocity with the couple of a bonded patch under a force.
 [[nodiscard]] inline RotationLoads rotation_loads(const ResponseField& field, const PlacedContact& c,
                                                   const BondedContact& bonded) noexcept {
   RotationLoads out;
@@ -114,8 +115,8 @@ struct MovedByLoads {
   return out;
 }
 
-/// The bonded stage: C less what the moments of a wide patch take from it, and the tool's rotation. `wide`: share
-/// of the moments.
+/// The bonded stage: C less what the moments of a wide patch take from it, and the tool's rotation. `wide`:
+/// share of the moments.
 [[nodiscard]] inline BondedContact bond_contact(const ResponseField& field, const PlacedContact& c,
                                                 double activation, double wide) noexcept {
   BondedContact out;
@@ -132,8 +133,8 @@ struct MovedByLoads {
   return out;
 }
 
-/// The contact's force as the loads beside it take it: at most that of the half-space for d. Where the body is far
-/// stiffer than a half-space, they have nothing to say.
+/// The contact's force as the loads beside it take it: at most that of the half-space for d. Where the body
+/// is far stiffer than a half-space, they have nothing to say.
 struct IndentingForce {
   FlatPunchCompliance near;
   double whole;             ///< normal part of the contact's force [m^2]

@@ -3,10 +3,10 @@
 
 /// @file Mid-edge corrections near the contacts, for quadratic display. Per tick.
 ///
-/// Over a triangle with corners' weights b_0, b_1, b_2 a field is drawn as sum b_c u_c + 4 sum b_c b_{c+1} e_c, e_c the
-/// mid-edge correction of edge c (mid_edge_table.hpp). It is largest for the regular part next to an edge of the body,
-/// where linear display makes half of the error of first order. Far away the corrections are left out and u_c is
-/// raised instead.
+/// Over a triangle with corners' weights b_0, b_1, b_2 a field is drawn as sum b_c u_c + 4 sum b_c b_{c+1}
+/// e_c, e_c the mid-edge correction of edge c (mid_edge_table.hpp). It is largest for the regular part next
+/// to an edge of the body, where linear display makes half of the error of first order. Far away the
+/// corrections are left out and u_c is raised instead.
 
 #include <palpate/response/tick/mid_edge_table.hpp>
 #include <palpate/response/tick/stages.hpp>
@@ -17,8 +17,8 @@
 namespace palpate {
 namespace detail {
 
-/// The mid-edge corrections of one tick's field within `reach` of the contacts' patches, fading over the last quarter of
-/// it: those of the near fields, which are known at the edges' middles, and those of the rest.
+/// The mid-edge corrections of one tick's field within `reach` of the contacts' patches, fading over the last
+/// quarter of it: those of the near fields, which are known at the edges' middles, and those of the rest.
 template <std::size_t Capacity>
 class MidEdgeCorrection {
  public:
@@ -54,8 +54,8 @@ class MidEdgeCorrection {
     }
   }
   /// Raises `field`, at the vertices, four numbers each, as far as the corrections of its edges are left out.
-  /// `vertices`: coordinates. By `max` / 2 at most, smoothly, r max^2 / (max^2 + r^2): more is what the mesh does not
-  /// resolve.
+  /// `vertices`: coordinates. By `max` / 2 at most, smoothly, r max^2 / (max^2 + r^2): more is what the mesh
+  /// does not resolve.
   void raise(const std::array<const float*, 3>& vertices, const float* field,
              std::span<const DrawnContact> contacts, float reach, float max, float* raised) const noexcept {
     const MidEdgeTable::Rows& rows = table_->vertex_rows();
@@ -129,8 +129,8 @@ class MidEdgeCorrection {
                      Simd4(total + 2 * stride + v) - z);
     }
   }
-  // How much of the corrections at a point is drawn for one contact: 1 near it, 0 beyond its reach or if it is
-  // inactive.
+  // How much of the corrections at a point is drawn for one contact: 1 near it, 0 beyond its reach or if it
+  // is inactive.
   [[nodiscard]] static PALPATE_INLINE Simd4 share(const NearField& near, const SimdVec3<Simd4>& at,
                                                   float reach) noexcept {
     const SimdVec3<Simd4> r{at.x - near.x.x(), at.y - near.x.y(), at.z - near.x.z()};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Corrections that make a linear field over a mesh quadratic: at the middles of edges, and at vertices in the
-/// mean. Made at set-up.
+/// @file Corrections that make a linear field over a mesh quadratic: at the middles of edges, and at vertices
+/// in the mean. Made at set-up.
 
 #include <palpate/core/detail/simd_shuffle.hpp>
 #include <palpate/response/tick/edge_bend.hpp>
@@ -11,10 +11,10 @@
 
 namespace palpate {
 
-/// Corrections of a linear field, from the boundary element mesh alone: by edge, weights with
-/// b = sum weight u(vertex), how far u at the edge's middle lies from the mean of its ends (none where both ends are
-/// fixed); by vertex, weights with r = sum weight u(vertex), by which a linear field is raised there so that it is right
-/// in the mean (none where the vertex is fixed). Derivation: edge_bend.hpp.
+/// Corrections of a linear field, from the boundary element mesh alone: by edge, weights with b = sum weight
+/// u(vertex), how far u at the edge's middle lies from the mean of its ends (none where both ends are fixed);
+/// by vertex, weights with r = sum weight u(vertex), by which a linear field is raised there so that it is
+/// right in the mean (none where the vertex is fixed). Derivation: edge_bend.hpp.
 class MidEdgeTable {
  public:
   struct Weight {
@@ -67,7 +67,8 @@ class MidEdgeTable {
   [[nodiscard]] const std::array<std::uint32_t, 2>& ends(std::size_t edge) const noexcept {
     return ends_[edge];
   }
-  /// Middles of all edges, by coordinate, padded to whole SIMD vectors; out of reach where an edge has no correction.
+  /// Middles of all edges, by coordinate, padded to whole SIMD vectors; out of reach where an edge has no
+  /// correction.
   [[nodiscard]] const std::array<std::vector<float>, 3>& middles() const noexcept { return middle_; }
   [[nodiscard]] const std::vector<Edges>& of_triangle() const noexcept { return of_triangle_; }
   [[nodiscard]] std::size_t memory() const noexcept {

@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file The near field of one solved contact: the half-space's displacement at any point of the surface, several
-/// points at a time. Per tick.
+/// @file The near field of one solved contact: the half-space's displacement at any point of the surface,
+/// several points at a time. Per tick.
 ///
-/// The surface near a contact is bent, the disc is flat. The disc is taken at the depth z of its own edge below the
-/// tangent plane: for a quadric z (a/r)^2, so depth = z (1 - (a/r)^2), which vanishes at the edge. The edge is at
-/// most `sagitta` deep: the side of a block is below its top by all of z.
+/// The surface near a contact is bent, the disc is flat. The disc is taken at the depth z of its own edge
+/// below the tangent plane: for a quadric z (a/r)^2, so depth = z (1 - (a/r)^2), which vanishes at the edge.
+/// The edge is at most `sagitta` deep: the side of a block is below its top by all of z.
 ///
 /// Second order in depth, s = max(r/a, 1), beta = delta_n/a, e_p = p/r: u = q_r e_p + q_n m + q_t e_p,
 ///     q_r = (d_n delta_n/a) (k_r asin(1/s)/(s sqrt(s^2 - 1 + e^2)) + sqrt(1 - s^-2) (r_4 s^-4 + r_6 s^-6))
 ///     q_n = (d_n delta_n/a) sqrt(1 - s^-2) (n_4 s^-4 + n_6 s^-6)
 ///     q_t = beta^2 (delta_t . e_p) t sqrt(1 - s^-2) s^-3
-/// r_4 to n_6 and t are linear in beta (DepthFactor). e is such that all terms add up to nothing at the patch's edge
-/// and within it. What moved the patch itself (push, slope of the couple of second order) is taken back outside.
+/// r_4 to n_6 and t are linear in beta (DepthFactor). e is such that all terms add up to nothing at the
+/// patch's edge and within it. What moved the patch itself (push, slope of the couple of second order) is
+/// taken back outside.
 ///
-/// A frictionless sphere: Hertz's field and a force dipole, of which outside the contact (1 - s^-6) is drawn, over
-/// what Hertz's weight makes of it on the surface, about 1 + 0.9 s^-2 + 0.7 s^-4; within the contact
-/// (1 - (r/a)^2) r `radial` along the surface instead.
+/// A frictionless sphere: Hertz's field and a force dipole, of which outside the contact (1 - s^-6) is drawn,
+/// over what Hertz's weight makes of it on the surface, about 1 + 0.9 s^-2 + 0.7 s^-4; within the contact (1
+/// - (r/a)^2) r `radial` along the surface instead.
 
 #include <palpate/core/simd_vec3.hpp>
 #include <palpate/elasticity/flat_punch.hpp>

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file What bonds a wide patch: its spread, shear and bending are kept at zero, not its mean alone. Per tick.
+/// @file What bonds a wide patch: its spread, shear and bending are kept at zero, not its mean alone. Per
+/// tick.
 ///
-/// Over a patch that is wide for its body, w would spread, shear and bend the surface. Five more loads prevent it:
-/// a radial force dipole, two shear dipoles, two bending couples, each with the flat punch's weight times the
-/// distance from its centre. Their strengths y are those for which the patch's own moments vanish (Ritz: the energy
-/// of all loads is least):
+/// Over a patch that is wide for its body, w would spread, shear and bend the surface. Five more loads
+/// prevent it: a radial force dipole, two shear dipoles, two bending couples, each with the flat punch's
+/// weight times the distance from its centre. Their strengths y are those for which the patch's own moments
+/// vanish (Ritz: the energy of all loads is least):
 ///
 ///     y = D^-1 (slope of the tool - G P - W M),   D = D_near + W,   C -> C - G^T D^-1 G
 ///
@@ -16,11 +17,11 @@
 /// | G, W   | moments of w over the patch by unit forces and by unit moments, times mu   | 1/m^2, 1/m^3 |
 /// | D_near | the half-space's: 3 (1-nu)/(16 a^3), 3 (2-nu)/(32 a^3), 3 (1-nu)/(8 a^3)   | 1/m^3        |
 ///
-/// A patch of less than an edge of the boundary element mesh has none of it, one of one and a half edges all of it,
-/// in between a share; the rest is prevented by the slopes of w (linear_loads.hpp). The more of a patch lies on the
-/// fixed region the less: from half on none. Only of a contact alone, and less as others come in
-/// (ContactSystem::activate): of what several do to each other's moments only the slopes are known. Nothing is
-/// fitted. docs/response_field.md, "Bonded patches".
+/// A patch of less than an edge of the boundary element mesh has none of it, one of one and a half edges all
+/// of it, in between a share; the rest is prevented by the slopes of w (linear_loads.hpp). The more of a
+/// patch lies on the fixed region the less: from half on none. Only of a contact alone, and less as others
+/// come in (ContactSystem::activate): of what several do to each other's moments only the slopes are known.
+/// Nothing is fitted. docs/response_field.md, "Bonded patches".
 
 #include <palpate/core/cholesky.hpp>
 #include <palpate/response/response_field.hpp>
@@ -44,8 +45,8 @@ struct PatchMoments {
     return smooth_step((a / size - tick::narrow_patch) / (tick::wide_patch - tick::narrow_patch));
   }
 
-  /// Reads G and W of a patch of radius a at a place of the load mesh. `counts`: factor of w; `dipole`: that of a
-  /// unit normal force (bonded_dipole); `part`: share that the moments have.
+  /// Reads G and W of a patch of radius a at a place of the load mesh. `counts`: factor of w; `dipole`: that
+  /// of a unit normal force (bonded_dipole); `part`: share that the moments have.
   void read(const ResponseField& field, const TouchPlace& place, const PatchTable::Level& level,
             const Vec3<double>& inward, double a, double counts, double dipole, double part) noexcept {
     share = part;
@@ -62,8 +63,8 @@ struct PatchMoments {
     invert(field.nu(), a);
   }
 
-  /// What the moments take from a compliance whose trace is `whole`, G^T D^-1 G. In theory less than all of it;
-  /// where the mesh does not resolve w, half of it: by (1 + r^4)^(-1/4), r the part over a half.
+  /// What the moments take from a compliance whose trace is `whole`, G^T D^-1 G. In theory less than all of
+  /// it; where the mesh does not resolve w, half of it: by (1 + r^4)^(-1/4), r the part over a half.
   [[nodiscard]] Mat3<double> take(double whole) noexcept {
     const MomentsByForce by_force = stiffness * G;
     const Mat3<double> all = G.transpose() * by_force;
@@ -102,8 +103,8 @@ struct PatchMoments {
   [[nodiscard]] Vec3<double> couple(const Moments& y) const noexcept { return y[3] * t1 + y[4] * t2; }
 
  private:
-  // Adds the moments of node i of the place, rotated from the node's axes into the patch's by the least rotation of
-  // one plane into the other; between opposite normals, where there is none, nothing is left.
+  // Adds the moments of node i of the place, rotated from the node's axes into the patch's by the least
+  // rotation of one plane into the other; between opposite normals, where there is none, nothing is left.
   void add_node(const ResponseField& field, const TouchPlace& place, const PatchTable::Level& level,
                 std::size_t i, double counts) noexcept {
     const std::size_t k = place.node[i];
@@ -129,8 +130,8 @@ struct PatchMoments {
     G += mean;
     W += own;
   }
-  // Rows of a node's loads to those of the patch, whose axes are rotated by the angle of cosine c and sine s: shears
-  // by twice the angle, couples by the angle.
+  // Rows of a node's loads to those of the patch, whose axes are rotated by the angle of cosine c and sine s:
+  // shears by twice the angle, couples by the angle.
   template <class M>
   static void rotate(M& rows, double c, double s) noexcept {
     const double c2 = c * c - s * s, s2 = 2 * c * s;
@@ -142,7 +143,8 @@ struct PatchMoments {
       rows(4, j) = c * rows(4, j) - s * couple;
     }
   }
-  // `stiffness`; W, too, where D has an eigenvalue below a tenth. In units in which D_near is the unit matrix.
+  // `stiffness`; W, too, where D has an eigenvalue below a tenth. In units in which D_near is the unit
+  // matrix.
   void invert(double nu, double a) noexcept {
     const double unit = 3 / (32 * a * a * a);
     Moments root;  // of 1 / D_near

@@ -80,9 +80,9 @@ void add_place(const TouchMesh& touch, const TouchPlace& place, List& list) noex
   return c;
 }
 
-/// each(part, node, level) for the spreads (PatchTable) that together are the load of a contact whose flat punch
-/// has the radius sqrt(loaded2). Interpolated twice, over the place's triangle and over those that the spreads
-/// lie on: a quarter of spacing^2 each time.
+/// each(part, node, level) for the spreads (PatchTable) that together are the load of a contact whose flat
+/// punch has the radius sqrt(loaded2). Interpolated twice, over the place's triangle and over those that the
+/// spreads lie on: a quarter of spacing^2 each time.
 template <class Each>
 void each_spread(const ResponseField& field, const PlacedContact& c, double loaded2,
                  const Each& each) noexcept {
@@ -95,10 +95,11 @@ void each_spread(const ResponseField& field, const PlacedContact& c, double load
 }
 
 /// Solved nodes that share the force: the spreads of the place's nodes, added up in `weight`, one number per
-/// solved node, all 0 before; `nodes` lists those with a weight. Returns the part of the force that they carry.
+/// solved node, all 0 before; `nodes` lists those with a weight. Returns the part of the force that they
+/// carry.
 ///
-/// Continuous. Points of the patch's plane laid onto the surface are not: off it, their nearest places jump from
-/// sheet to sheet.
+/// Continuous. Points of the patch's plane laid onto the surface are not: off it, their nearest places jump
+/// from sheet to sheet.
 [[nodiscard]] inline double spread_force(const ResponseField& field, const PlacedContact& c, double loaded2,
                                          float* weight, std::vector<std::uint32_t>& nodes) noexcept {
   nodes.clear();
@@ -115,7 +116,8 @@ void each_spread(const ResponseField& field, const PlacedContact& c, double load
   return 1 - (std::max)(c.regular - sum, 0.0);
 }
 
-/// The nodes' parts q of the patch's moments (moment_loads.hpp), three numbers each, where they have a weight.
+/// The nodes' parts q of the patch's moments (moment_loads.hpp), three numbers each, where they have a
+/// weight.
 inline void spread_moments(const ResponseField& field, const PlacedContact& c, double loaded2,
                            const float* weight, float* q) noexcept {
   each_spread(field, c, loaded2, [&](double part, std::uint32_t k, std::size_t level) {

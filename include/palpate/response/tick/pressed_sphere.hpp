@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file The contact of a frictionless sphere with a body: its force, and its loads of second order in depth. Per
-/// tick.
+/// @file The contact of a frictionless sphere with a body: its force, and its loads of second order in depth.
+/// Per tick.
 ///
-/// | what                    | how                                                                               |
-/// |-------------------------|-----------------------------------------------------------------------------------|
-/// | force across the normal | F h, h = (K w_t - s) / (1 + R_s K): where the slopes of sphere and body meet      |
-/// | where it acts           | on the body at x_c = R_s h - w_t from the first touch: the middle of the near field |
-/// | displacement            | d less dG/dF, G = F (R_s h^2 + K x_c^2) / 2 + F s.x_c + F s.w_t / 2; the last term is that of a body that rotates as a whole |
-/// | radial force dipole     | D = -nu/(1-nu) F (C_w F + k d_H): a patch's, less what a pressure that is tilted outwards takes of d_H |
-/// | a body that stiffens    | D e, by the part of D with d_H: 8/3 D e / F, as that part is of power 5/3 in F and e in proportion to F |
-/// | finite strain           | `sphere_softening` (sphere_contact.hpp)                                           |
-/// | within the contact      | the surface slides outwards, `sphere_spread` (near_field.hpp)                     |
+/// | what | how |
+/// |---|---|
+/// | force across the normal | F h, h = (K w_t - s) / (1 + R_s K): where the slopes of sphere and body meet |
+/// | where it acts | on the body at x_c = R_s h - w_t from the first touch: the middle of the near field |
+/// | displacement | d less dG/dF, G = F (R_s h^2 + K x_c^2) / 2 + F s.x_c + F s.w_t / 2 |
+/// | radial force dipole | D = -nu/(1-nu) F (C_w F + k d_H): a patch's, less what an outward pressure takes |
+/// | a body that stiffens | D e, by the part of D with d_H: 8/3 D e / F (powers 5/3 and 1 of F) |
+/// | finite strain | `sphere_softening` (sphere_contact.hpp) |
+/// | within the contact | the surface slides outwards, `sphere_spread` (near_field.hpp) |
 ///
-/// | symbol | name                                                                                          | unit |
-/// |--------|-----------------------------------------------------------------------------------------------|------|
-/// | R_s    | radius of the sphere                                                                          | m    |
-/// | K      | half of k1 + k2, the surface's curvatures                                                     | 1/m  |
-/// | w, w_t | regular part: displacement beyond the half-space's, and its part along the surface; s: slope of w_n | m |
-/// | e      | strain of the surface by w                                                                    | -    |
+/// | symbol | name | unit |
+/// |---|---|---|
+/// | R_s | radius of the sphere | m |
+/// | K | half of k1 + k2, the surface's curvatures | 1/m |
+/// | w, w_t; s | regular part of the displacement, its part along the surface; slope of w_n | m; - |
+/// | e | strain of the surface by w | - |
 ///
-/// d = d_H + C_w F: sphere_contact.hpp. Only k, `sphere_softening` and `sphere_spread` are fitted (second_order.hpp).
-/// Far away D is all of second order that a half-space has. Bounds: constants.hpp.
+/// d = d_H + C_w F: sphere_contact.hpp. Only k, `sphere_softening` and `sphere_spread` are fitted
+/// (second_order.hpp). Far away D is all of second order that a half-space has. Bounds: constants.hpp.
 
 #include <palpate/response/tick/second_order_loads.hpp>
 #include <palpate/response/tick/sphere_contact.hpp>
@@ -81,8 +81,8 @@ struct SphereAcross {
 
   SphereAcross(const Indenter& tool, const SphereShape& shape, const PlacedContact& c,
                const MovedByLoads& moved, double P) noexcept {
-    // h = A (m + h): what the force across does to w_t and s counts. A body that bends easily would be thrown aside
-    // if the norm of A were not at most a half.
+    // h = A (m + h): what the force across does to w_t and s counts. A body that bends easily would be thrown
+    // aside if the norm of A were not at most a half.
     Mat3<double> A = shape.R / tool.sphere * P * (shape.curvature * c.w - moved.couple);
     A -= tool.m * (tool.m.transpose() * A);
     A *= smooth_limit(A.squaredNorm(), tick::max_lean_feedback2);
@@ -112,8 +112,9 @@ struct SphereAcross {
   return stiffer * smooth_limit(stiffer * stiffer, max * max);
 }
 
-/// Force and place of a sphere's contact, by passes of which each knows what the one before gave: the radius, what is
-/// taken from depth and compliance. The placed stage is made in `placed`, for the radius of the last pass but one.
+/// Force and place of a sphere's contact, by passes of which each knows what the one before gave: the radius,
+/// what is taken from depth and compliance. The placed stage is made in `placed`, for the radius of the last
+/// pass but one.
 [[nodiscard]] inline SphereSolution solve_sphere_contact(const ResponseField& field, const SecondOrder* k,
                                                          const Indenter& sphere, const SphereShape& shape,
                                                          PlacedContact& placed) noexcept {
@@ -163,9 +164,9 @@ struct SphereAcross {
   return out;
 }
 
-/// Within the contact the surface lies on the sphere; beside it, not inside. `at`: an undeformed position; u: its
-/// displacement, changed along m by less than 0.4 d: what is farther off is another side of the body. `reach`: where
-/// that ends, from the contact's rim [m].
+/// Within the contact the surface lies on the sphere; beside it, not inside. `at`: an undeformed position; u:
+/// its displacement, changed along m by less than 0.4 d: what is farther off is another side of the body.
+/// `reach`: where that ends, from the contact's rim [m].
 inline void rest_on_sphere(const DrawnContact& c, const Vec3<double>& at, double reach,
                            Vec3<double>& u) noexcept {
   const Indenter& tool = c.tool;
@@ -175,8 +176,8 @@ inline void rest_on_sphere(const DrawnContact& c, const Vec3<double>& at, double
   if (!(rest > 0)) return;
   const double inside = depth - tool.sphere + std::sqrt(rest) - moved.dot(tool.m), off = inside / depth,
                r = (at - tool.x).norm();
-  // What is inside is moved out, wholly up to half a radius from the rim, no more from a radius or `reach` on; what
-  // lies below is drawn up, towards the rim less and less over a tenth of the radius.
+  // What is inside is moved out, wholly up to half a radius from the rim, no more from a radius or `reach`
+  // on; what lies below is drawn up, towards the rim less and less over a tenth of the radius.
   const double share = inside > 0 ? 2 - 2 * (r - tool.a) / (std::min)(tool.a, reach) : 10 * (1 - r / tool.a);
   // Near the sphere's equator, from a quarter of R_s^2 down, and off by d, nothing is moved.
   u += std::clamp(share, 0.0, 1.0) * (std::min)(4 * rest / (tool.sphere * tool.sphere), 1.0) *

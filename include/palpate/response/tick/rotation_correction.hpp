@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Second order in depth where the body rotates: what rotates with it moves along a circle, not along the
-/// tangent. Per tick.
+/// @file Second order in depth where the body rotates: what rotates with it moves along a circle, not along
+/// the tangent. Per tick.
 ///
 ///     q = 1/2 f (k_t omega(w) x w + k_c (omega(w) x n + omega(n) x w + sum omega(n_i) x n_j)) ,   i != j
 ///
@@ -30,8 +30,8 @@ class RotationCorrection {
   explicit RotationCorrection(const ResponseField& field)
       : field_(&field), fields_(numbers(Capacity) * field.stride()) {}
 
-  /// q at the mesh's vertices to `out`, by coordinate, from the field `total` and the near fields of the contacts, one
-  /// after the other, likewise. Returns the largest q^2 [m^2].
+  /// q at the mesh's vertices to `out`, by coordinate, from the field `total` and the near fields of the
+  /// contacts, one after the other, likewise. Returns the largest q^2 [m^2].
   float find(const float* total, const float* near, std::span<const DrawnContact> contacts,
              const SecondOrder& constants, float* out) noexcept {
     const std::size_t n = field_->stride(), count = contacts.size(), step = numbers(count);

@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Second order in depth: loads of a contact that are quadratic in its displacement, and the forces that
-/// only the tool feels. Per tick. Derivation: docs/response_field.md, "Second order in depth".
+/// @file Second order in depth: loads of a contact that are quadratic in its displacement, and the forces
+/// that only the tool feels. Per tick. Derivation: docs/response_field.md, "Second order in depth".
 ///
-/// | load                  | formula, divided by mu                                                             |
-/// |-----------------------|------------------------------------------------------------------------------------|
-/// | radial force dipole   | -nu/(1-nu) P_n d_n - foreshortened k s^2                                           |
-/// | bending couple        | couple_slid P_n w_t - couple_sunk w_n P_t                                          |
-/// | universal forces      | drag delta_n delta_t / (1 + beta^2), -softening delta_n d_n                        |
-/// | rotated tool          | derivatives of the energy -tip a delta_n delta_t . s                               |
-/// | felt only: stiffening | 2 nu/(1-nu) delta_n (radial . P) along m                                           |
-/// | felt only: lever      | derivatives by P of the energy lever (P_n w_t - w_n P_t) . (slope of w_n)          |
+/// | load | formula, divided by mu |
+/// |---|---|
+/// | radial force dipole | -nu/(1-nu) P_n d_n - foreshortened k s^2 |
+/// | bending couple | couple_slid P_n w_t - couple_sunk w_n P_t |
+/// | universal forces | drag delta_n delta_t / (1 + beta^2), -softening delta_n d_n |
+/// | rotated tool | derivatives of the energy -tip a delta_n delta_t . s |
+/// | felt only: stiffening | 2 nu/(1-nu) delta_n (radial . P) along m |
+/// | felt only: lever | derivatives by P of the energy lever (P_n w_t - w_n P_t) . (slope of w_n) |
 ///
-/// The load has moved with the tool: far away that is a force dipole by d_n and the couple of the force by w. A
-/// factor of d_n is the local indentation delta_n = C_near P_n. k: bending stiffness; s: slope by the tool's
-/// rotation; radial, slope of w: MovedByLoads. Constants: second_order.hpp.
+/// The load has moved with the tool: far away that is a force dipole by d_n and the couple of the force by w.
+/// A factor of d_n is the local indentation delta_n = C_near P_n. k: bending stiffness; s: slope by the
+/// tool's rotation; radial, slope of w: MovedByLoads. Constants: second_order.hpp.
 
 #include <palpate/response/second_order.hpp>
 #include <palpate/response/tick/linear_loads.hpp>
 
 namespace palpate::detail {
 
-/// nu / (1 - nu): the part of the surface's strain by which a force dipole along the normal acts, where there is
-/// no traction.
+/// nu / (1 - nu): the part of the surface's strain by which a force dipole along the normal acts, where there
+/// is no traction.
 [[nodiscard]] inline double dipole_ratio(double nu) noexcept { return nu / (1 - nu); }
 
 /// d less the local indentation: by how much the body as a whole moves at the patch.
@@ -37,8 +37,8 @@ struct RegularDisplacement {
         normal(u.dot(tool.m)) {}
 };
 
-/// Displacement of the patch by the universal forces: the surface is dragged along, and softens; with a slope s by
-/// the tool, the derivatives of -tip a delta_n delta_t . s by the force.
+/// Displacement of the patch by the universal forces: the surface is dragged along, and softens; with a slope
+/// s by the tool, the derivatives of -tip a delta_n delta_t . s by the force.
 [[nodiscard]] PALPATE_INLINE Vec3<double> universal_push(const SecondOrder& k, const Indenter& tool,
                                                          const IndentingForce& F, double depth,
                                                          double indented, const Vec3<double>& slipped,
@@ -53,8 +53,8 @@ struct RegularDisplacement {
 }
 
 /// Displacement by which the patch would rotate with the body (rotation_correction.hpp), 1/2 omega x (k_t w +
-/// k_c delta) with omega from the slope of w; the patch is bonded, so the force takes it back. At most a quarter
-/// of d and of the force.
+/// k_c delta) with omega from the slope of w; the patch is bonded, so the force takes it back. At most a
+/// quarter of d and of the force.
 [[nodiscard]] PALPATE_INLINE Vec3<double> patch_rotation(const SecondOrder& k, const PlacedContact& c,
                                                          const BondedContact& bonded,
                                                          const LinearContact& linear, const Vec3<double>& w,
@@ -66,11 +66,11 @@ struct RegularDisplacement {
          rotating;
 }
 
-/// Displacement whose force S u the tool feels and no field goes with: derivatives by the force of two energies of
-/// third degree, of which the loads above are the derivatives by w's gradient.
+/// Displacement whose force S u the tool feels and no field goes with: derivatives by the force of two
+/// energies of third degree, of which the loads above are the derivatives by w's gradient.
 ///
-///     stiffening: D e, e = radial . P the surface's strain by w, D = -nu/(1-nu) delta_n P_n; by P_n: 2 D e / P_n
-///     lever (P_n w_t - w_n P_t) . slope: a body that bends or rotates beneath the patch moves it sideways, too
+///     stiffening: D e, e = radial . P the surface's strain by w, D = -nu/(1-nu) delta_n P_n
+///     lever (P_n w_t - w_n P_t) . slope: a body that bends beneath the patch moves it sideways, too
 ///
 /// At most a quarter of d and of the force.
 [[nodiscard]] PALPATE_INLINE Vec3<double> felt_only(const SecondOrder& k, const PlacedContact& c,

@@ -3,19 +3,19 @@
 
 /// @file A rigid frictionless sphere pressed into the body: the contact area grows with depth. Per tick.
 ///
-/// The half-space's answer in series with the body's correction, d = (1 + k d_H/R) d_H + C_w F, l =
+/// The half-space's answer in series with the regular part, d = (1 + k d_H/R) d_H + C_w F, l =
 /// ln((R+a)/(R-a)):
 ///     d_H = (a/2) l - g a^4/(3 R^3),   F = E* ((a^2 + R^2) l/2 - a R - 8/15 g a^5/R^3),   E* = E/(1-nu^2)
-/// | symbol | name                                                                              | unit | range       |
-/// |--------|-----------------------------------------------------------------------------------|------|-------------|
-/// | R      | radius of the relative curvature, 2/R = 2/R_sphere + k1 + k2                      | m    | > 0         |
-/// | a      | radius of the contact                                                             | m    | [0, 0.95 R] |
-/// | d      | how deep the sphere is pressed                                                    | m    | <= 0: none  |
-/// | C_w    | normal compliance of the correction; < 0 where a layer lies on something stiff    | m/N  |             |
-/// | g      | of the gap's fourth power of r, what a sphere of radius R on a plane has too much | -    | [0, 1]      |
-/// | k      | softening by finite strain                                                        | -    | > -0.25     |
+/// | symbol | name | unit | range |
+/// |---|---|---|---|
+/// | R | radius of the relative curvature, 2/R = 2/R_sphere + k1 + k2 | m | > 0 |
+/// | a | radius of the contact | m | [0, 0.95 R] |
+/// | d | how deep the sphere is pressed | m | <= 0: none |
+/// | C_w | normal compliance of the regular part; < 0 where a layer lies on something stiff | m/N |  |
+/// | g | of the gap's fourth power of r, what a sphere of radius R on a plane has too much | - | [0, 1] |
+/// | k | softening by finite strain | - | > -0.25 |
 /// k1, k2: the surface's principal curvatures. Limits: no friction; pressed along the normal; the depth is
-/// held where a = 0.95 R; what a body takes from d_H is held at half of it. Sources: [sneddon1965],
+/// bounded where a = 0.95 R; what a body takes from d_H is at most half of it. Sources: [sneddon1965],
 /// [johnson1985] ch. 4.
 
 #include <palpate/core/scalar.hpp>
@@ -56,9 +56,9 @@ template <Real S>
     v.by_load = modulus * (s * l + (s2 + S(1)) * q - S(1) - S(8) / S(3) * less * s2 * s2);
     v.depth = own * (S(1) + softening * own);
     v.by_depth = by_own * (S(1) + S(2) * softening * own);
-    const bool held = series * v.load < S(-0.5) * v.depth;
-    v.depth += held ? S(-0.5) * v.depth : series * v.load;
-    v.by_depth += held ? S(-0.5) * v.by_depth : series * v.by_load;
+    const bool bounded = series * v.load < S(-0.5) * v.depth;
+    v.depth += bounded ? S(-0.5) * v.depth : series * v.load;
+    v.by_depth += bounded ? S(-0.5) * v.by_depth : series * v.by_load;
     return v;
   };
   S low = 0, high = S(0.95), s = (std::min)(std::sqrt(target), S(0.9));

@@ -4,15 +4,15 @@
 /// @file The stages of a contact in a tick of a response field. A stage is a value: made by one function from
 /// those before it, constant afterwards.
 ///
-/// | stage        | type               | made in                | holds                                              |
-/// |--------------|--------------------|------------------------|----------------------------------------------------|
-/// | given        | Indenter           | response_contact.hpp   | what presses, where, by how much                   |
-/// | placed       | PlacedContact      | placement.hpp          | nodes of the load mesh, w, compliance of the mean  |
-/// | bonded       | BondedContact      | linear_loads.hpp       | compliance with what bonds the patch; the tool's rotation |
-/// | linear       | LinearContact      | contact_system.hpp     | force of first order                               |
-/// | second order | SecondOrderContact | second_order_loads.hpp | loads beside the force, what the tool feels        |
-/// | solved       | SolvedContact      | contact_system.hpp     | force, moments of a wide patch                     |
-/// | drawn        | DrawnContact       | near_coefficients.hpp  | coefficients of the near field                     |
+/// | stage | type | made in | holds |
+/// |---|---|---|---|
+/// | given | Indenter | response_contact.hpp | what presses, where, by how much |
+/// | placed | PlacedContact | placement.hpp | nodes of the load mesh, w, compliance of the mean |
+/// | bonded | BondedContact | linear_loads.hpp | compliance with what bonds the patch; the tool's rotation |
+/// | linear | LinearContact | contact_system.hpp | force of first order |
+/// | second order | SecondOrderContact | second_order_loads.hpp | loads beside the force, felt forces |
+/// | solved | SolvedContact | contact_system.hpp | force, moments of a wide patch |
+/// | drawn | DrawnContact | near_coefficients.hpp | coefficients of the near field |
 ///
 /// All forces and moments are divided by mu.
 
@@ -46,9 +46,9 @@ struct Indenter {
   [[nodiscard]] double displacement2() const noexcept {
     return d.squaredNorm() + a * a * rotation.squaredNorm();
   }
-  /// s^2 of the flat punch whose load has the same mean r^2 as that of a contact of radius r: the punch's is 2/3 s^2,
-  /// Hertz's pressure has 2/5 r^2. `seen2`: the mean of that and of a^2, for the displacement is averaged with the
-  /// punch's weight.
+  /// s^2 of the flat punch whose load has the same mean r^2 as that of a contact of radius r: the punch's is
+  /// 2/3 s^2, Hertz's pressure has 2/5 r^2. `seen2`: the mean of that and of a^2, for the displacement is
+  /// averaged with the punch's weight.
   [[nodiscard]] double loaded2(double r) const noexcept { return (is_sphere() ? 0.6 : 1) * r * r; }
   [[nodiscard]] double seen2() const noexcept { return (is_sphere() ? 0.8 : 1) * a * a; }
 };

@@ -2,19 +2,19 @@
 #pragma once
 
 /// @file Surface displacement, force and torque of case tilt_pressed_edge (bench/truth/make_reference.cpp,
-/// edges of an eighth of the patch's radius): a block of 80 x 50 x 60 mm, x and z from the middle, held at
-/// its base y = 0, neo-Hookean, E = 1 MPa, nu = 0.49; a stuck disc of 6 mm on its top, 12 mm from an edge, is
+/// edges of an eighth of the patch's radius): a block of 80 x 50 x 60 mm, x and z from the middle, fixed at
+/// its base y = 0, neo-Hookean, E = 1 MPa, nu = 0.49; a bonded flat punch of 6 mm on its top, 12 mm from an edge, is
 /// pressed 4 mm and tilted 0.16 rad. A hundred free vertices, drawn by area. Own error: force and torque 3 to
 /// 6 % too high (accuracy.md).
 
 namespace palpate::test {
 
-inline constexpr double truth_turned_force[] = {-11.8794632, -59.0839714};  // x, y [N]
-inline constexpr double truth_turned_torque =
+inline constexpr double truth_rotated_force[] = {-11.8794632, -59.0839714};  // x, y [N]
+inline constexpr double truth_rotated_torque =
     -0.0528827819;  // about z, through the patch's middle where it has moved to [N m]
 inline constexpr struct {
   float x[3], u[3];  // [m]
-} truth_turned[] = {
+} truth_rotated[] = {
     {{-0.0314704f, 0.05f, 0.00640563f}, {2.21075e-05f, 3.33549e-05f, -7.48143e-06f}},
     {{-0.04f, 0.0174545f, -0.0039788f}, {-7.26418e-05f, 9.69868e-06f, 5.16481e-07f}},
     {{0.0124479f, 0.011279f, 0.03f}, {-0.000164051f, -0.000128217f, 0.000263351f}},
