@@ -22,8 +22,8 @@ namespace palpate {
 ///
 ///     u(x) = sum_c K_c(x) P_c + B(x) Q + U + theta x (x - o),   Q = -sum_c (P_c, (x_c - o) x P_c)
 ///
-/// K_c is the field of a force on a bonded flat punch of the contact's radius, B that of force and moment on a
-/// disc in the place of the fixed region, both closed forms of the half-space (elasticity/disc.hpp); U and
+/// K_c is the field of a force on a bonded flat punch of the contact's radius, B that of force and moment on
+/// a disc in place of the fixed region, both closed forms of the half-space (elasticity/disc.hpp); U and
 /// theta make u zero over the fixed region in the least squares' sense, and the forces P_c give each contact
 /// its displacement D_c, or are 0 where that would take a pull. Own derivation: what a body feels of a small
 /// contact, and of a small support, is the half-space's field; the far one sees force and moment only

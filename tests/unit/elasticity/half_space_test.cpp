@@ -230,7 +230,7 @@ TEST_CASE("half-spaces: bad input") {
   MeshData<double> broken = mesh;
   broken.vertices[3].x() = std::numeric_limits<double>::quiet_NaN();
   CHECK(refusal([&] { HalfSpaceDeformation<double>(broken, cap); }) ==
-        "HalfSpaceDeformation: place must be finite, at mesh vertex 3");
+        "HalfSpaceDeformation: position must be finite, at mesh vertex 3");
 
   Drawn drawn = egg();
   ContactState<double> bad = top;
