@@ -136,4 +136,9 @@ class BeamSkeletonDeformation {
   std::vector<Vec3<D>> corners_;
 };
 
+template <SkeletonSystem R, BlockInterpolation I, Neighbourhood N>
+BeamSkeletonDeformation(R, I, N, const MeshData<typename I::Scalar>&,
+                        const typename BeamSkeletonDeformation<R, I, N>::Params&)
+    -> BeamSkeletonDeformation<R, I, N>;
+
 }  // namespace palpate

@@ -262,4 +262,10 @@ class DisplacementField {
   std::size_t active_ = 0, previous_count_ = 0;
 };
 
+template <BlockInterpolation I, Neighbourhood N>
+DisplacementField(I, N, const MeshData<typename I::Scalar>&) -> DisplacementField<I, N>;
+template <BlockInterpolation I, Neighbourhood N>
+DisplacementField(I, N, const MeshData<typename I::Scalar>&, const typename DisplacementField<I, N>::Params&)
+    -> DisplacementField<I, N>;
+
 }  // namespace palpate

@@ -14,7 +14,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <concepts>
 #include <random>
+#include <type_traits>
 #include <vector>
 
 using namespace palpate;
@@ -222,6 +224,19 @@ TEST_CASE("the user's linear interpolation of one vertex gives the shipped one's
   SUBCASE("quadrilaterals, float") { check_linear(Box<float>({})); }
   SUBCASE("quadrilaterals, double") { check_linear(Box<double>({})); }
   SUBCASE("polygons, double") { check_linear(Cylinder<double>({})); }
+}
+
+TEST_CASE("types are deduced from parts; a user's interpolation is given with its partition") {
+  const Ellipsoid<double> body({.axes = {0.03, 0.02, 0.025}});
+  const MeshData<double> mesh = body.mesh(100);
+  const auto partition = make_partition(body, mesh);
+  const DisplacementField shipped(LinearInterpolation<double>(partition), Halved{}, mesh);
+  static_assert(
+      std::same_as<std::remove_cvref_t<decltype(shipped.interpolation())>, LinearInterpolation<double>>);
+  const DisplacementField own(InterpolationBlocks(partition, Quadratic{}), Halved{}, mesh, {.contacts = 2});
+  static_assert(
+      std::same_as<std::remove_cvref_t<decltype(own.interpolation())>, InterpolationBlocks<Quadratic>>);
+  CHECK(own.params().contacts == 2);
 }
 
 TEST_CASE("the user's policies together draw a shape, without the heap") {
