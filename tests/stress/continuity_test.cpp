@@ -16,6 +16,7 @@
 #include <doctest/doctest.h>
 
 #include <support/paths.hpp>
+#include <support/solvers.hpp>
 
 #include <cstdio>
 #include <random>

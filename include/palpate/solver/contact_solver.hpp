@@ -174,20 +174,7 @@ class ContactSolver {
     return {result.wrench, result.status | status};
   }
 
-  TickResult<S> contact_at(const Pose<S>& X, [[maybe_unused]] S dt) noexcept {
-    contacts_.clear();
-    Sums sums;
-    TickResult<S> result{{}, collector_.collect(object_, tool_, force_, X, sums)};
-    if (!has(result.status, Status::contact)) return result;
-    if constexpr (has_friction && ClusteredTopology<Contacts>) {
-      if (collector_.changed()) inherit(X, sums);
-    }
-    for (std::size_t k = 0; k < max_regions; ++k) {
-      if (collector_.slot(k).active) press(k, sums[k], X, dt, result.wrench);
-    }
-    if constexpr (Coupling::active) couple(X, result.wrench);
-    return result;
-  }
+  TickResult<S> contact_at(const Pose<S>& X, S dt) noexcept;
 
   /// One region: equivalent contact, rate term, friction; adds its force to the wrench.
   void press(std::size_t k, Sum& sum, const Pose<S>& X, [[maybe_unused]] S dt, Wrench<S>& wrench) noexcept {
@@ -355,5 +342,28 @@ class ContactSolver {
   PALPATE_NO_UNIQUE_ADDRESS Present<std::array<Memory, max_regions>, 0, has_friction> memory_{};
   FixedVector<ContactState<S>, max_regions> contacts_;
 };
+
+// Outside the class, so that a solver that is instantiated explicitly elsewhere (`extern template`) is not
+// compiled again: compilers do so with functions that are inline.
+template <ContactSurface Object, ForceModel Force, FrictionLaw Friction, Topology Contacts,
+          WrenchPolicy Acting, RegionForceCoupling<typename Object::Scalar> Coupling>
+  requires std::same_as<typename Object::Scalar, typename Force::Scalar> &&
+           std::same_as<typename Object::Scalar, typename Friction::Scalar>
+TickResult<typename Object::Scalar>
+ContactSolver<Object, Force, Friction, Contacts, Acting, Coupling>::contact_at(
+    const Pose<typename Object::Scalar>& X, [[maybe_unused]] typename Object::Scalar dt) noexcept {
+  contacts_.clear();
+  Sums sums;
+  TickResult<S> result{{}, collector_.collect(object_, tool_, force_, X, sums)};
+  if (!has(result.status, Status::contact)) return result;
+  if constexpr (has_friction && ClusteredTopology<Contacts>) {
+    if (collector_.changed()) inherit(X, sums);
+  }
+  for (std::size_t k = 0; k < max_regions; ++k) {
+    if (collector_.slot(k).active) press(k, sums[k], X, dt, result.wrench);
+  }
+  if constexpr (Coupling::active) couple(X, result.wrench);
+  return result;
+}
 
 }  // namespace palpate

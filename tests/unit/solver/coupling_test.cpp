@@ -10,6 +10,7 @@
 
 #include <support/no_heap.hpp>
 #include <support/paths.hpp>
+#include <support/solvers.hpp>
 
 using namespace palpate;
 using V = Vec3<double>;
