@@ -61,6 +61,7 @@ endif()
 # Two objects of one program.
 add_executable(palpate_test_odr odr/first.cpp odr/second.cpp)
 palpate_own_target(palpate_test_odr)
+target_compile_options(palpate_test_odr PRIVATE -O0)
 target_include_directories(palpate_test_odr PRIVATE ${generated})
 add_test(NAME odr COMMAND palpate_test_odr)
 
