@@ -19,8 +19,10 @@ echo
 echo "| | |"
 echo "| --- | --- |"
 echo "| machine | $(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1), $(nproc) cores, $(uname -sm) |"
-echo "| load at the end | $(cut -d' ' -f1-3 /proc/loadavg): above 1 others used the machine, and times are upper bounds |"
-echo "| compiler | $("$(sed -n 's/^CMAKE_CXX_COMPILER:[A-Z]*=//p' build/bench/CMakeCache.txt)" --version | head -1) |"
+load=$(cut -d' ' -f1-3 /proc/loadavg)
+echo "| load at the end | $load: above 1 others used the machine, and times are upper bounds |"
+compiler=$(sed -n 's/^CMAKE_CXX_COMPILER:[A-Z]*=//p' build/bench/CMakeCache.txt)
+echo "| compiler | $("$compiler" --version | head -1) |"
 echo "| flags, times |$(flags palpate_bench_force_budget | sed "s/ -DSCALAR=double//") |"
 echo "| flags, instruction counts |$(flags palpate_bench_skip_point | sed 's/-DCOMPOSITION=point//') |"
 commit=$(git rev-parse --short HEAD 2>/dev/null || echo "none, not in git")
@@ -37,7 +39,8 @@ for file in out/bench/*.csv; do
     echo
   fi
   if [ -f "out/bench/$name.log" ]; then
-    notes=$(grep -E "PASS|OFFENDERS|^slowest|^scheduling|^reading the clock" "out/bench/$name.log" | sed 's/^/- /' || true)
+    notes=$(grep -E "PASS|OFFENDERS|^slowest|^scheduling|^reading the clock" "out/bench/$name.log" |
+      sed 's/^/- /' || true)
     if [ -n "$notes" ]; then
       echo "$notes"
       echo

@@ -10,9 +10,9 @@
 /// row by row.
 ///
 /// The tool goes round the same path of 256 poses again and again, and a solver does the same work in the
-/// same position each time. The least time of a position over all rounds is the solver's own, without the machine:
-/// OUTPUT_machine.csv has the median position and the slowest one (own_p50_us, own_max_us; empty for fewer than
-/// 8 rounds).
+/// same position each time. The least time of a position over all rounds is the solver's own, without the
+/// machine: OUTPUT_machine.csv has the median position and the slowest one (own_p50_us, own_max_us; empty for
+/// fewer than 8 rounds).
 ///
 /// Budgets: 30 us for 99.9 % of all ticks up to 1,000 points and 8 regions; median 0.1 us for one point and 1
 /// us for 100 points on an exact surface. Times are less what reading the clock takes.

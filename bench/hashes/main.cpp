@@ -3,9 +3,10 @@
 /// @file What the library computes, as hashes: wrenches of every shipped body and topology in float and
 /// double, shapes of every deformation model, a response field, its tick and its bytes.
 ///
-/// A change that must not change a result leaves every row as it was. Rows are FNV-1a over the bits of all that
-/// was computed along a path; `sum` is a plain sum of the same numbers, to see how large a difference is.
-/// Compiled for any x86-64: rows depend on the compiler, its flags and the C library, not on the processor.
+/// A change that must not change a result leaves every row as it was. Rows are FNV-1a over the bits of all
+/// that was computed along a path; `sum` is a plain sum of the same numbers, to see how large a difference
+/// is. Compiled for any x86-64: rows depend on the compiler, its flags and the C library, not on the
+/// processor.
 
 #include "response/path.hpp"
 #include "shape_scene.hpp"

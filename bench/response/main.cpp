@@ -3,11 +3,12 @@
 /// @file What a response field costs, in the tick and at set-up: docs/accuracy.md, chapter Cost.
 ///
 /// The ellipsoid of half axes 60, 40, 40 mm, fixed where y <= -36 mm, E = 1.5 MPa, nu = 0.49, the default
-/// number of boundary element vertices; contacts move along path.hpp's path, so that no tick has those of the one
+/// number of vertices; contacts move along path.hpp's path, so that no tick has those of the one
 /// before. Steps take turns, so that all see the same machine; a turn is six times along the path, so that a
 /// step finds the caches as it left them.
 ///
-///     force                solve(), which also finds the position; "after a field": a field drawn just before used the caches
+///     force                solve(), which also finds the position; "after a field": a field drawn just before
+///                          used the caches
 ///     field                displace() into packed floats, after a solve() that is not timed
 ///     deformation model    ResponseFieldDeformation::write(): force, field, positions, normals if asked for
 ///     memcpy               of as many bytes as the positions have

@@ -28,8 +28,8 @@ std::size_t nearest_vertex(const palpate::MeshData<double>& mesh, const V& p) {
                                   mesh.vertices.begin());
 }
 
-/// k1 + k2 [1/m] at a position: an ellipsoid's if there are semi-axes, centred at the origin unless its geometry
-/// says otherwise; else the mesh's, averaged over half a ball's radius.
+/// k1 + k2 [1/m] at a position: an ellipsoid's if there are semi-axes, centred at the origin unless its
+/// geometry says otherwise; else the mesh's, averaged over half a ball's radius.
 double curvature_at(const V& position, double radius, const palpate::MeshData<double>& mesh,
                     const std::string& meta) {
   if (const auto axes = numbers(meta, "semi_axes_m"); !axes.empty()) {

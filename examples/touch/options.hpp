@@ -48,9 +48,9 @@ inline constexpr const char* usage =
                   the law of the paper
   --detect WHERE  undeformed (default): contact is found on the object's shape at rest; deformed: on the
                   shape of the last tick, worked out in the servo loop; for mesh files
-  --sweep DEPTH   a fast tool is stopped where a point of it would get deeper than DEPTH, in metres, so that it
-                  does not pass through thin parts: at most 0.4 of the thinnest. Stopped, it does not slide.
-                  Default: not stopped
+  --sweep DEPTH   a fast tool is stopped where a point of it would get deeper than DEPTH, in metres, so that
+                  it does not pass through thin parts: at most 0.4 of the thinnest. Stopped, it does not
+                  slide. Default: not stopped
   --rate HZ       servo rate asked of the device (default 1000)
   --stepped       simulated time instead of real time: same bits in every run (stand-in device only)
   --out FOLDER    where the results go (default out)

@@ -141,7 +141,8 @@ struct FollowShape {
 [[nodiscard]] Shape skeleton_shape(const Beams& beams, palpate::FacePartition<S> partition, const V& fixed,
                                    const palpate::MeshData<S>& mesh);
 
-/// The models that need the mesh alone: half-space and response. Everything below y = `fixed_below` [m] is fixed.
+/// The models that need the mesh alone: half-space and response. Everything below y = `fixed_below` [m] is
+/// fixed.
 [[nodiscard]] Shape mesh_shape(const std::string& model, const palpate::MeshData<S>& mesh, S fixed_below);
 
 /// By the model's name. The lowest tenth of the body is fixed, for the models that need a region.
