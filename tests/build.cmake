@@ -19,8 +19,8 @@ file(CONFIGURE OUTPUT ${generated}/all_headers.hpp CONTENT "#pragma once\n${incl
 # Each header alone, in a file of its own, in two forms. The thorough form (tests/run --thorough) is the whole
 # check, with exceptions and without. Parsing Eigen again for each header, and what only the set-up of a
 # response field needs, were most of its time: the usual form has Eigen parsed already and leaves that set-up
-# out. It cannot see a header that uses Eigen without including it. Force laws stay free of Eigen, which is most
-# of a user's compile time: both forms check them without it.
+# out. It cannot see a header that uses Eigen without including it. Force laws stay free of Eigen, which is
+# most of a user's compile time: both forms check them without it.
 set(header_sources "")
 set(adapter_libraries "")
 foreach(adapter IN LISTS adapters)
@@ -156,8 +156,10 @@ if(UNIX)
   add_test(NAME house COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/check_house.sh ${PROJECT_SOURCE_DIR})
   add_test(NAME readme COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/check_readme.sh ${PROJECT_SOURCE_DIR})
   add_test(NAME docs COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/check_docs.sh ${PROJECT_SOURCE_DIR})
-  add_test(NAME docs_refuses COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/check_docs_test.sh ${CMAKE_CURRENT_BINARY_DIR}/docs)
-  add_test(NAME house_refuses COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/check_house_test.sh ${CMAKE_CURRENT_BINARY_DIR}/house)
+  foreach(check docs house)
+    add_test(NAME ${check}_refuses
+      COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/check_${check}_test.sh ${CMAKE_CURRENT_BINARY_DIR}/${check})
+  endforeach()
 endif()
 
 get_property(tests DIRECTORY PROPERTY TESTS)

@@ -137,7 +137,7 @@ class TabulatedForce {
   static void check(std::span<const Sample> samples) {
     const auto count = static_cast<double>(samples.size());
     if (samples.size() < 2) fail("TabulatedForce", "needs at least 2 samples", count);
-    if (samples.size() > N) fail("TabulatedForce", "more samples than N", count);
+    if (samples.size() > N) fail("TabulatedForce", "more samples than the object holds", count);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       const S depth = samples[i].depth, force = samples[i].force;
       const auto refuse = [i](const char* rule, S value) {
