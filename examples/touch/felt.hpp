@@ -60,7 +60,7 @@ struct SolverFeel final : Feel {
       : solver(std::move(at)), sweep(std::move(swept)), limit(std::move(limited)), follow(std::move(then)) {}
 
   Felt tick(const palpate::Pose<S>& X, S dt) noexcept override {
-    palpate::HeldPose<S> at{X, palpate::Status::ok};
+    palpate::ReachedPose<S> at{X, palpate::Status::ok};
     if (sweep) at = sweep->advance(solver.tool(), solver.object(), X);
     const palpate::TickResult<S> result = solver.tick(at.pose, dt);
     Felt felt;
