@@ -186,7 +186,7 @@ class SampledSurface {
     PALPATE_INLINE explicit SplineBatch(const std::array<float, batch_size>& t) noexcept {
       using V = detail::batch_simd<float>;
       for (std::size_t i = 0; i < batch_size; i += V::size()) {
-        const Spline<V> w(V(&t[i]));
+        const Spline<V> w{V(&t[i])};
         for (std::size_t k = 0; k < 3; ++k)
           detail::store(&value[k][i], w.value[k]), detail::store(&slope[k][i], w.slope[k]);
       }
