@@ -12,7 +12,7 @@
 ///
 /// Your own is a `VertexInterpolation`: one function, of one vertex, in plain numbers. `InterpolationBlocks`
 /// works out the weights in vector registers and calls it vertex by vertex. The shipped ones are
-/// `BlockInterpolation`s: they work on a block of vertices at once, two to five times as fast.
+/// `BlockInterpolation`s: they work on a block of vertices at once, two to three times as fast.
 ///
 /// Corners are the extremal points and one contact point. The fields of several contacts are summed by the
 /// caller, so an interpolation sees one contact at a time. No corner is another contact's point: a contact
