@@ -60,8 +60,9 @@ inline constexpr double mean_disc_depth = 0.05;
 // to 1 % at two radii, so nothing far away changes. Chosen on the half-space.
 //   a push: s^-8; a slope: s^-7 times r/a
 inline constexpr float min_distance2 = 1e-12f;  ///< r^2 / a^2: keeps a/r finite on the axis
-/// A sphere's dipole is drawn with the factor (1 - s^-6) / (1 + 0.9 s^-2 + 0.7 s^-4), chosen with its other near
-/// terms. The closed form's own field over s^-2 is less than the divisor: 1.09 at s = 2, 2.36 at the rim.
+/// A sphere's dipole is drawn with the factor (1 - s^-6) / (1 + 0.9 s^-2 + 0.7 s^-4), chosen with its other
+/// near terms. The closed form's own field over s^-2 is less than the divisor: 1.09 at s = 2, 2.36 at the
+/// rim.
 inline constexpr float hertz_dipole_2 = 0.9f, hertz_dipole_4 = 0.7f;
 /// Least nu/(1-nu) by which the near term's pole is set; at nu = 0 there is no dipole.
 inline constexpr double min_dipole_ratio = 0.01;

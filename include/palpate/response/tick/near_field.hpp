@@ -17,8 +17,8 @@
 /// taken back outside.
 ///
 /// A frictionless sphere: Hertz's field and a force dipole, of which outside the contact (1 - s^-6) is drawn,
-/// over 1 + 0.9 s^-2 + 0.7 s^-4 (constants.hpp); within the contact (1 - (r/a)^2) r `radial` along the surface
-/// instead.
+/// over 1 + 0.9 s^-2 + 0.7 s^-4 (constants.hpp); within the contact (1 - (r/a)^2) r `radial` along the
+/// surface instead.
 
 #include <palpate/core/simd_vec3.hpp>
 #include <palpate/elasticity/flat_punch.hpp>
