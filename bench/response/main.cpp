@@ -3,9 +3,9 @@
 /// @file What a response field costs, in the tick and at set-up: docs/accuracy.md, chapter Cost.
 ///
 /// The ellipsoid of half axes 60, 40, 40 mm, fixed where y <= -36 mm, E = 1.5 MPa, nu = 0.49, the default
-/// number of vertices; contacts move along path.hpp's path, so that no tick has those of the one
-/// before. Steps take turns, so that all see the same machine; a turn is six times along the path, so that a
-/// step finds the caches as it left them.
+/// number of boundary element vertices; contacts move along path.hpp's path, so that no tick has those of the
+/// one before. Steps take turns, so that all see the same machine; a turn is six times along the path, so
+/// that a step finds the caches as it left them.
 ///
 ///     force                solve(), which also finds the position; "after a field": a field drawn just before
 ///                          used the caches
@@ -106,7 +106,7 @@ int main(int argc, char** argv) {
   std::optional<ResponseDisplay> display;
   std::vector<std::byte> bytes, memory;
   const auto columns = [](const ResponseField& f) {
-    return Floats(f.column(0, 0), f.loads * 3 * f.stride() * f.touch().solved());
+    return Floats(f.influence(0, 0), f.loads * 3 * f.stride() * f.load_mesh().solved());
   };
   const auto set_up = [&](std::size_t) {
     field = std::make_shared<const ResponseField>(

@@ -39,10 +39,10 @@ inline PathContact contact_on_path(std::size_t k, std::size_t positions) {
   out.patches = {patch(angle, 0), patch(angle + std::numbers::pi, 0)};
   out.turned = patch(angle, 1);
   const auto& first = out.patches[0];
-  const Curvature<double> bend = body.curvature(first.place);
-  out.ball = {first.place, first.normal, 2 * radius, bend.k1 + bend.k2, depth};
+  const Curvature<double> bend = body.curvature(first.position);
+  out.ball = {first.position, first.normal, 2 * radius, bend.k1 + bend.k2, depth};
   out.state.displacement = first.displacement;
-  out.state.centre = first.place + first.displacement;
+  out.state.centre = first.position + first.displacement;
   out.state.normal = first.normal;
   out.state.area = std::numbers::pi * radius * radius;
   return out;

@@ -58,7 +58,7 @@ inline void draw_bodies(std::FILE* to) {
                                        {.E = 1e5, .nu = body.nu, .mesh = {.vertices = 300}, .threads = 2});
     const V normal = presses[b].normal.normalized();
     const palpate::ResponseContact<double> contact{
-        .place = palpate::TriangleBvh<double>(body.mesh).closest(1e-3 * presses[b].near).position,
+        .position = palpate::TriangleBvh<double>(body.mesh).closest(1e-3 * presses[b].near).position,
         .normal = normal,
         .radius = 1e-3 * presses[b].radius,
         .displacement = -1e-3 * presses[b].depth * normal};

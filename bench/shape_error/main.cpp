@@ -37,7 +37,7 @@ std::vector<V> response(const Truth& t) {
                             [&](const V& p) { return p.y() <= t.held(); },
                             {.E = t.E, .nu = t.nu, .mesh = {.vertices = 600}, .threads = 2});
   ResponseTick<1> tick(field);
-  const ResponseContact<double> contact{.place = t.top,
+  const ResponseContact<double> contact{.position = t.top,
                                         .normal = V::UnitY(),
                                         .radius = t.patch,
                                         .displacement = -t.depth[depth_index] * V::UnitY()};

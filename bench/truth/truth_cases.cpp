@@ -80,7 +80,7 @@ int main(int argc, char** argv) {
   const palpate::ResponseField field(mesh, fixed_region(folder, mesh, meta), params);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count();
   std::printf("%s: %zu solve vertices, %zu touchable nodes, %.1f MB, set-up %.2f s\n", argv[1],
-              field.mesh().vertices.size(), field.touch().nodes().size(), double(field.memory()) / 1e6,
+              field.mesh().vertices.size(), field.load_mesh().nodes().size(), double(field.memory()) / 1e6,
               seconds);
   palpate::ResponseTick<4> tick(field, {.second_order = argc <= 5});
   const palpate::ResponseDisplay display(field, mesh.vertices);
@@ -115,7 +115,7 @@ int main(int argc, char** argv) {
     for (double depth : depths) {
       std::vector<palpate::ResponseContact<double>> contacts;
       for (const Patch& p : patches)
-        contacts.push_back({.place = p.position,
+        contacts.push_back({.position = p.position,
                             .normal = p.normal,
                             .radius = p.radius,
                             .displacement = depth * p.factor * p.direction,

@@ -178,7 +178,7 @@ void response(const Table& table, double vertices, double bound) {
         "float", field->mesh().vertices.size(), setup,
         [&](double d) {
           const ResponseContact<double> contact{
-              .place = t.top, .normal = V::UnitY(), .radius = t.patch, .displacement = -d * V::UnitY()};
+              .position = t.top, .normal = V::UnitY(), .radius = t.patch, .displacement = -d * V::UnitY()};
           V force;
           (void)model.solve(&contact, 1, &force);
           model.displace(display, now.data(), 3);

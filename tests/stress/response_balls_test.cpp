@@ -19,7 +19,7 @@ using Ball = SphereContact<double>;
 
 Ball middle(const Ball& l, const Ball& r) {
   Ball m = l;
-  m.place = 0.5 * (l.place + r.place);
+  m.position = 0.5 * (l.position + r.position);
   m.normal = (l.normal + r.normal).normalized();
   m.depth = 0.5 * (l.depth + r.depth);
   return m;
@@ -55,7 +55,7 @@ void roll_over(const test::ResponseBody& body) {
     for (int i = 0; i < steps; ++i) {
       walker.step(0.005 * h);
       const Ball ball{
-          .place = walker.place, .normal = walker.normal, .radius = R, .depth = deepest * (1 + i) / steps};
+          .position = walker.place, .normal = walker.normal, .radius = R, .depth = deepest * (1 + i) / steps};
       const double half_space = 4.0 / 3 * modulus * std::sqrt(R) * std::pow(ball.depth, 1.5);
       const auto force = [&](const Ball& at) { return tick.solve(at).on_body(at.normal); };
       const V F = force(ball);

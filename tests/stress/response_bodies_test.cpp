@@ -53,7 +53,7 @@ void try_body(const test::ResponseBody& body, double convergence) {
   const auto middle = [](const Both& l, const Both& r) {
     Both m = l;
     for (std::size_t c = 0; c < 2; ++c) {
-      m[c].place = 0.5 * (l[c].place + r[c].place);
+      m[c].position = 0.5 * (l[c].position + r[c].position);
       m[c].normal = (l[c].normal + r[c].normal).normalized();
       m[c].displacement = 0.5 * (l[c].displacement + r[c].displacement);
     }
@@ -71,12 +71,12 @@ void try_body(const test::ResponseBody& body, double convergence) {
     V last[2], last_torque[2], F[2], T[2];
     Both before_contacts, before_drawn;
     for (int i = 0; i < steps; ++i) {
-      const V from[2] = {one.place, two.place}, turned[2] = {one.normal, two.normal};
+      const V from[2] = {one.position, two.position}, turned[2] = {one.normal, two.normal};
       one.step(0.005 * h);
       two.step(0.005 * h);
       const auto contact = [&](const test::Walker& w) {
         return ResponseContact<double>{
-            .place = w.place,
+            .position = w.place,
             .normal = w.normal,
             .radius = a,
             .displacement = -d * w.normal + 0.3 * d * tangential(V(0.6, 0.3, 0.74), w.normal),
@@ -87,8 +87,9 @@ void try_body(const test::ResponseBody& body, double convergence) {
       tick.solve(both.data(), count, F, T);
       const double way = way_of(both[0]),
                    stiff = mu * way / flat_punch_compliance(a, body.nu).normal;  // half-space, at most
-      const double moved = ((one.place - from[0]).norm() + (two.place - from[1]).norm()) / (std::min)(h, a) +
-                           (one.normal - turned[0]).norm() + (two.normal - turned[1]).norm();
+      const double moved =
+          ((one.position - from[0]).norm() + (two.position - from[1]).norm()) / (std::min)(h, a) +
+          (one.normal - turned[0]).norm() + (two.normal - turned[1]).norm();
       double steep = 0;
       for (std::size_t c = 0; c < count; ++c) {
         REQUIRE(is_finite(F[c]));
@@ -150,7 +151,7 @@ void try_body(const test::ResponseBody& body, double convergence) {
           most_linear = (std::max)(most_linear, V(u[3 * k], u[3 * k + 1], u[3 * k + 2]).norm() / way);
         finer.solve(both.data(), 1, &better);
         stiffest = (std::max)(stiffest, coarse.norm() / stiff);
-        if (one.place.y() > body.held_below + 2 * a)
+        if (one.position.y() > body.held_below + 2 * a)
           change.push_back((coarse - better).norm() / better.norm());
       }
     }
@@ -169,7 +170,8 @@ void try_body(const test::ResponseBody& body, double convergence) {
   CHECK(force_jump < 0.02);
   CHECK(field_jump < 0.02);
   CHECK(median < convergence);
-  CHECK(most < 5.5);  // 4 d at the solve mesh's vertices, and a near field of up to 1.5 d between them
+  CHECK(most <
+        5.5);  // 4 d at the boundary element mesh's vertices, and a near field of up to 1.5 d between them
 }
 }  // namespace
 

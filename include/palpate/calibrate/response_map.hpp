@@ -64,7 +64,7 @@ template <SampledBody B>
     const ResponseField& field, const B& body, const ResponseMapParams<typename B::Scalar>& params) {
   using S = typename B::Scalar;
   return detail::fit_map<DuffingMap<S>>(body, params, "response_map", [&](const SurfacePoint<S>& at) {
-    return fit_duffing(response_curve<S>(field, {.place = at.position,
+    return fit_duffing(response_curve<S>(field, {.position = at.position,
                                                  .normal = at.normal,
                                                  .radius = params.radius,
                                                  .displacement = -params.depth * at.normal}));
@@ -84,7 +84,7 @@ template <SampledBody B>
       const Curvature<S> k = body.curvature(at.position);
       curvature = k.k1 + k.k2;
     }
-    return fit_hertz(response_curve<S>(field, SphereContact<S>{.place = at.position,
+    return fit_hertz(response_curve<S>(field, SphereContact<S>{.position = at.position,
                                                                .normal = at.normal,
                                                                .radius = params.radius,
                                                                .curvature = curvature,

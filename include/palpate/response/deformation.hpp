@@ -21,7 +21,7 @@ namespace palpate {
 /// | symbol | name                  | unit | range                                                                 |
 /// |--------|-----------------------|------|-----------------------------------------------------------------------|
 /// | a      | radius of the patch   | m    | sqrt(area / pi), at least `least_radius` and |D| / 2                  |
-/// |        | `Params::least_radius` | m   | > 0, or 0 for a quarter of the solve mesh's edge length               |
+/// |        | `Params::least_radius` | m   | > 0, or 0 for a quarter of the boundary element mesh's edge length               |
 ///
 /// |D| / 2 is where second order in depth ends, and keeps a point contact from drawing a needle. `Contacts`: most drawn at
 /// once; more are left out, region_overflow. A contact that is not finite is left out, invalid_pose. With the
@@ -157,7 +157,7 @@ class ResponseFieldDeformation {
                             std::size_t count) noexcept {
     bool same = count == last_count_;
     for (std::size_t c = 0; same && c < count; ++c)
-      same = pressed[c].place == last_[c].place && pressed[c].normal == last_[c].normal &&
+      same = pressed[c].position == last_[c].position && pressed[c].normal == last_[c].normal &&
              pressed[c].radius == last_[c].radius && pressed[c].displacement == last_[c].displacement;
     last_ = pressed;
     last_count_ = count;

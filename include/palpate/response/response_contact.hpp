@@ -51,12 +51,12 @@ class ResponseTick {
   template <Real S>
   [[nodiscard]] PressedSphere solve(const SphereContact<S>& in) noexcept {
     count_ = 0;
-    if (!is_usable(ResponseContact<S>{in.place, in.normal, in.radius, Vec3<S>(in.normal * in.depth)}) ||
+    if (!is_usable(ResponseContact<S>{in.position, in.normal, in.radius, Vec3<S>(in.normal * in.depth)}) ||
         !is_finite(in.curvature) || !(in.depth > S(0)))
       return {};
     const Vec3<double> m = -in.normal.template cast<double>().normalized();
     count_ = 1;
-    return contact_.solve_sphere({.x = in.place.template cast<double>(),
+    return contact_.solve_sphere({.x = in.position.template cast<double>(),
                                   .m = m,
                                   .d = double(in.depth) * m,
                                   .rotation = Vec3<double>::Zero(),
@@ -85,7 +85,7 @@ class ResponseTick {
  private:
   template <Real S>
   [[nodiscard]] static detail::Indenter indenter(const ResponseContact<S>& in) noexcept {
-    return {.x = in.place.template cast<double>(),
+    return {.x = in.position.template cast<double>(),
             .m = -in.normal.template cast<double>().normalized(),
             .d = in.displacement.template cast<double>(),
             .rotation = in.rotation.template cast<double>(),

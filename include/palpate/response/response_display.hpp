@@ -7,10 +7,11 @@
 
 namespace palpate {
 
-/// Display vertices sorted by the solve mesh's triangles, each with its weights. It belongs to no tick and
-/// serves any number of them. Reports points that are not finite.
+/// Display vertices sorted by the boundary element mesh's triangles, each with its weights. It belongs to no
+/// tick and serves any number of them. Reports points that are not finite.
 ///
-/// Memory: 24 bytes per vertex and 28 per triangle of the solve mesh. Set-up: about a microsecond per vertex.
+/// Memory: 24 bytes per vertex and 28 per triangle of the boundary element mesh. Set-up: about a microsecond
+/// per vertex.
 class ResponseDisplay {
  public:
   struct Span {
@@ -43,7 +44,7 @@ class ResponseDisplay {
   [[nodiscard]] const std::uint32_t* vertex() const noexcept { return vertex_.data(); }
 
  private:
-  void bind(const SolveMesh& mesh, const std::vector<Vec3<double>>& points);
+  void bind(const ElementMesh& mesh, const std::vector<Vec3<double>>& points);
 
   std::size_t size_ = 0;
   std::vector<Span> spans_;

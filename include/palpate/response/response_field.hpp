@@ -9,14 +9,14 @@
 /// |--------|-------------------------------|------|-----------------------------------------|
 /// | E      | Young's modulus               | Pa   | > 0                                     |
 /// | nu     | Poisson's ratio               | -    | [0, 1/2]; 1/2 is exact, nothing locks   |
-/// | n      | vertices of the solve mesh    | -    | [20, 5000]; error about 1/n             |
+/// | n      | vertices of the boundary element mesh    | -    | [20, 5000]; error about 1/n             |
 ///
-/// Memory: 84 n m bytes for the columns, m the places of loads (load_places.hpp): with n = 600 34 MB for a
-/// smooth body, 95 to 110 MB for one that is all next to its edges, as a block; see `memory()`. During set-up
-/// about twice that and 150 n^2 bytes more. Set-up: O(n^3), seconds. Several pieces are allowed, each held
-/// somewhere. Limits: small strain per unit load; parts thinner than an edge of the solve mesh bend too
-/// little: `unresolved_area()`. Reports (error.hpp) bad E, nu, mesh or fixed region. Source: [brebbia1984],
-/// [james1999].
+/// Memory: 84 n m bytes for the influence functions, m the positions of loads (load_positions.hpp): with n =
+/// 600 34 MB for a smooth body, 95 to 110 MB for one that is all next to its edges, as a block; see
+/// `memory()`. During set-up about twice that and 150 n^2 bytes more. Set-up: O(n^3), seconds. Several pieces
+/// are allowed, each held somewhere. Limits: small strain per unit load; parts thinner than an edge of the
+/// boundary element mesh bend too little: `unresolved_area()`. Reports (error.hpp) bad E, nu, mesh or fixed
+/// region. Source: [brebbia1984], [james1999].
 
 #include <palpate/geometry/concept.hpp>
 #include <palpate/response/setup/element_mesh.hpp>
@@ -29,23 +29,23 @@ namespace palpate {
 /// All that a tick reads; what save.hpp writes.
 struct ResponseParts {
   double E = 0, nu = 0;
-  SolveMesh mesh;                                       ///< without nodes_of, middle and nodes
-  std::vector<TouchNode> nodes;                         ///< of the touch mesh
+  ElementMesh mesh;                                     ///< without nodes_of, middle and nodes
+  std::vector<LoadNode> nodes;                          ///< of the load mesh
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< between them
-  std::vector<std::uint32_t> share_begin;               ///< see TouchMesh
-  std::vector<TouchMesh::Share> shares;
-  std::vector<float> columns;
+  std::vector<std::uint32_t> share_begin;               ///< see LoadMesh
+  std::vector<LoadMesh::Share> shares;
+  std::vector<float> influence;  ///< see InfluenceFunctions
   std::vector<PatchTable::Own> own;
   std::vector<PatchTable::Second> second;
   std::vector<PatchTable::Moments> moments;
   std::vector<std::uint32_t> spread_begin;  ///< see PatchTable
-  std::vector<TouchMesh::Share> spread;
+  std::vector<LoadMesh::Share> spread;
   std::vector<MidEdgeTable::Edges> edges;  ///< see MidEdgeTable
   MidEdgeTable::Rows bends, raises;
 };
 
 namespace detail {
-class LoadPlaces;
+class LoadPositions;
 }
 
 class ResponseField {
@@ -53,11 +53,11 @@ class ResponseField {
   struct Params {
     double E = 1e6;                             ///< Young's modulus [Pa], > 0
     double nu = 0.5;                            ///< Poisson's ratio [-], [0, 1/2]
-    RemeshParams mesh = {};                     ///< solve mesh
+    RemeshParams mesh = {};                     ///< boundary element mesh
     unsigned threads = 2;                       ///< at set-up only; see parallel.hpp for hosts without
     std::function<void(double)> progress = {};  ///< called in the calling thread with what is done, 0 to 1
   };
-  /// Fields per solved node of the touch mesh: unit forces along x, y, z; unit radial double force; unit
+  /// Fields per solved node of the load mesh: unit forces along x, y, z; unit radial double force; unit
   /// tilts along its two tangents; unit twist about its inward normal.
   static constexpr std::size_t loads = InfluenceFunctions::loads;
 
@@ -80,30 +80,33 @@ class ResponseField {
   [[nodiscard]] double E() const noexcept { return E_; }
   [[nodiscard]] double nu() const noexcept { return nu_; }
   [[nodiscard]] double shear_modulus() const noexcept { return E_ / (2 * (1 + nu_)); }
-  [[nodiscard]] const SolveMesh& mesh() const noexcept { return mesh_; }
-  /// Fraction of the free surface's area where the body is thinner than the solve mesh's edges (see
-  /// palpate::unresolved_area): 0 is good, 1 is a plate with too few vertices. Milliseconds; set-up only.
+  [[nodiscard]] const ElementMesh& mesh() const noexcept { return mesh_; }
+  /// Fraction of the free surface's area where the body is thinner than the boundary element mesh's edges
+  /// (see palpate::unresolved_area): 0 is good, 1 is a plate with too few vertices. Milliseconds; set-up
+  /// only.
   [[nodiscard]] double unresolved_area() const;
-  [[nodiscard]] const TouchMesh& touch() const noexcept { return touch_; }
+  [[nodiscard]] const LoadMesh& load_mesh() const noexcept { return load_mesh_; }
   [[nodiscard]] const PatchTable& table() const noexcept { return table_; }
   [[nodiscard]] const MidEdgeTable& bends() const noexcept { return bends_; }
   [[nodiscard]] const RotationTable& rotation() const noexcept { return rotation_; }
   /// Bytes that a tick may read.
   [[nodiscard]] std::size_t memory() const noexcept {
-    return columns_.size() * sizeof(float) + table_.memory() + bends_.memory() + rotation_.memory();
+    return influence_.size() * sizeof(float) + table_.memory() + bends_.memory() + rotation_.memory();
   }
-  /// Vertices of the solve mesh, rounded up to whole registers, whatever this processor's.
+  /// Vertices of the boundary element mesh, rounded up to whole registers, whatever this processor's.
   [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
   [[nodiscard]] static constexpr std::size_t padded(std::size_t vertices) noexcept {
     return (vertices + 7) / 8 * 8;
   }
   /// mu w of load l of solved node k: x at every vertex, y and z `stride()` further each [1/m]; l >= 3:
   /// [1/m^2].
-  [[nodiscard]] const float* column(std::size_t k, std::size_t l) const noexcept { return influence()(k, l); }
-  /// The same at the place of node i.
+  [[nodiscard]] const float* influence(std::size_t k, std::size_t l) const noexcept {
+    return functions()(k, l);
+  }
+  /// The same at the position of node i.
   [[nodiscard]] Vec3<double> at(std::size_t i, std::size_t k, std::size_t l) const noexcept {
-    const TouchNode& node = touch_.nodes()[i];
-    const float* const c = column(k, l);
+    const LoadNode& node = load_mesh_.nodes()[i];
+    const float* const c = influence(k, l);
     Vec3<float> w = Vec3<float>::Zero();
     for (std::size_t j = 0; j < 3; ++j) {
       if (node.part[Eigen::Index(j)] == 0) continue;
@@ -112,14 +115,14 @@ class ResponseField {
     }
     return w.template cast<double>();
   }
-  /// The solve mesh's vertices by coordinate, padded; 1 where free, 0 where fixed.
+  /// The boundary element mesh's vertices by coordinate, padded; 1 where free, 0 where fixed.
   [[nodiscard]] const float* coordinate(int axis) const noexcept {
-    return &place_[static_cast<std::size_t>(axis) * stride_];
+    return &position_[static_cast<std::size_t>(axis) * stride_];
   }
-  [[nodiscard]] const float* is_free() const noexcept { return &place_[3 * stride_]; }
+  [[nodiscard]] const float* is_free() const noexcept { return &position_[3 * stride_]; }
 
  private:
-  [[nodiscard]] InfluenceFunctions influence() const noexcept { return {columns_.data(), stride_}; }
+  [[nodiscard]] InfluenceFunctions functions() const noexcept { return {influence_.data(), stride_}; }
   template <Real S>
   [[nodiscard]] static MeshData<double> to_double(const MeshData<S>& mesh) {
     MeshData<double> out;
@@ -134,17 +137,17 @@ class ResponseField {
              const Params& params);
   void build_from(const MeshData<double>& mesh, const std::vector<std::uint8_t>& fixed_triangle,
                   const Params& params);
-  void derive(const detail::LoadPlaces& places, std::size_t k);
-  void join(const detail::LoadPlaces& places, std::size_t k);
+  void derive(const detail::LoadPositions& positions, std::size_t k);
+  void join(const detail::LoadPositions& positions, std::size_t k);
   void read_mesh();
 
   double E_ = 0, nu_ = 0;
-  SolveMesh mesh_;
-  TouchMesh touch_;
+  ElementMesh mesh_;
+  LoadMesh load_mesh_;
   PatchTable table_;
   MidEdgeTable bends_;
   RotationTable rotation_;
-  std::vector<float> columns_, place_;
+  std::vector<float> influence_, position_;
   std::size_t stride_ = 0;
 };
 

@@ -15,7 +15,7 @@ TEST_CASE(
                             [](const V& p) { return p.y() <= -0.03; },
                             {.E = 1e5, .nu = 0.5, .mesh = {.vertices = 60}, .threads = 1});
   const ResponseContact<double> contact{
-      .place = V(0, 0.04, 0), .normal = V::UnitY(), .radius = 0.005, .displacement = V(0, -0.005, 0)};
+      .position = V(0, 0.04, 0), .normal = V::UnitY(), .radius = 0.005, .displacement = V(0, -0.005, 0)};
   const std::vector<CurvePoint> curve = response_curve(field, contact, 30);
   CHECK(curve.size() == 30);
   CHECK(curve.back().depth == 0.005);

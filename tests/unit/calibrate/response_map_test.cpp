@@ -42,7 +42,7 @@ TEST_CASE("a tool on a fitted map feels what the field answers, anywhere on the 
     if (at.position.y() < beside) continue;
     const double d = depth * (0.25 + 0.75 * count / 200);
     const ResponseContact<double> contact{
-        .place = at.position, .normal = at.normal, .radius = a, .displacement = -d * at.normal};
+        .position = at.position, .normal = at.normal, .radius = a, .displacement = -d * at.normal};
     V F;
     tick.solve(&contact, 1, &F);
     const double felt =

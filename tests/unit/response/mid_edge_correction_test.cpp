@@ -10,12 +10,12 @@ namespace {
 using namespace palpate;
 using V = Vec3<double>;
 
-SolveMesh cube() {
+ElementMesh cube() {
   MeshData<double> mesh = test::box_mesh(V(0.1, 0.1, 0.1), 10);
   std::vector<std::uint8_t> fixed;
   for (const auto& t : mesh.triangles)
     fixed.push_back(mesh.vertices[t[0]].y() + mesh.vertices[t[1]].y() + mesh.vertices[t[2]].y() < 1e-9);
-  return make_solve_mesh(SmoothSurface(mesh), fixed, {.vertices = 300});
+  return make_element_mesh(SmoothSurface(mesh), fixed, {.vertices = 300});
 }
 detail::DrawnContact contact_at(const V& position) {
   detail::DrawnContact contact{};
@@ -33,8 +33,8 @@ V u(const V& x) { return V(x.x() * x.x() + x.z(), 2 * x.x() * x.z(), 0.1 - x.z()
 }  // namespace
 
 TEST_CASE("a quadratic field is drawn exactly on a face, near a contact; far from it, as ever") {
-  const SolveMesh mesh = cube();
-  const MidEdgeTable table(mesh, detail::EdgeBend(mesh));
+  const ElementMesh mesh = cube();
+  const MidEdgeTable table(mesh, detail::MidEdgeFit(mesh));
   const std::size_t n = ResponseField::padded(mesh.vertices.size());
   std::vector<float> field(3 * n, 0.f);
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
@@ -60,7 +60,7 @@ TEST_CASE("a quadratic field is drawn exactly on a face, near a contact; far fro
       const detail::SimdVec3<detail::Simd4> more = bend(third, third);
       const V drawn = (u(p) + u(q) + u(r)) / 3 + V(more.x[0], more.y[0], more.z[0]),
               linear = (u(p) + u(q) + u(r)) / 3;
-      // The penalty on second derivatives (edge_bend.hpp) makes them too small where neighbours lie to one
+      // The penalty on second derivatives (mid_edge_fit.hpp) makes them too small where neighbours lie to one
       // side, next to an edge of the cube: 8 % met.
       CHECK((drawn - u(middle)).norm() < 0.1 * (linear - u(middle)).norm());
       ++checked;
@@ -71,8 +71,8 @@ TEST_CASE("a quadratic field is drawn exactly on a face, near a contact; far fro
 
 TEST_CASE(
     "far from a contact a quadratic field is drawn linearly, right in the mean; near it, vertices stay") {
-  const SolveMesh mesh = cube();
-  const MidEdgeTable table(mesh, detail::EdgeBend(mesh));
+  const ElementMesh mesh = cube();
+  const MidEdgeTable table(mesh, detail::MidEdgeFit(mesh));
   const auto bulge = [](const V& x) {
     return V(x.x() * x.x() + x.z(), x.squaredNorm(), 0.1 - x.z() * x.z());
   };
@@ -135,8 +135,8 @@ TEST_CASE(
 }
 
 TEST_CASE("near fields are drawn by their values at the middles of edges, a contact's own and all of them") {
-  const SolveMesh mesh = cube();
-  const MidEdgeTable table(mesh, detail::EdgeBend(mesh));
+  const ElementMesh mesh = cube();
+  const MidEdgeTable table(mesh, detail::MidEdgeFit(mesh));
   const std::size_t n = ResponseField::padded(mesh.vertices.size());
   std::array<detail::DrawnContact, 2> contact{contact_at(V(0.03, 0.1, 0.03)), contact_at(V(0.07, 0.1, 0.06))};
   contact[0].near.normal = 1, contact[1].near.normal = 0.5f;

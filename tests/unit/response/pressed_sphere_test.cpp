@@ -17,7 +17,7 @@ ResponseField ellipsoid(double nu) {
 SphereContact<double> on_flank(double depth) {
   const V place(0.06 * std::sin(0.7), 0.04 * std::cos(0.7), 0),
       weight = axes.cwiseProduct(axes).cwiseInverse(), normal = place.cwiseProduct(weight).normalized();
-  return {.place = place, .normal = normal, .radius = 0.012, .curvature = 45, .depth = depth};
+  return {.position = place, .normal = normal, .radius = 0.012, .curvature = 45, .depth = depth};
 }
 Eigen::VectorXd shape(ResponseTick<1>& tick, const ResponseDisplay& display, double depth) {
   Eigen::VectorXd u(3 * Eigen::Index(display.size()));
@@ -32,7 +32,7 @@ TEST_CASE(
     "it moves by its depth") {
   for (const double nu : {0.0, 0.3, 0.5}) {
     const ResponseField field = ellipsoid(nu);
-    std::vector<V> points{on_flank(0).place};
+    std::vector<V> points{on_flank(0).position};
     for (const V& p : field.mesh().vertices) points.push_back(p);
     const ResponseDisplay display(field, points);
     ResponseTick<1> tick(field), linear(field, {.second_order = false});
@@ -80,7 +80,7 @@ TEST_CASE("a ball: absurd curvatures and depths end in bounded forces and fields
       CHECK(out.across.norm() <= 0.25 * (1 + 1e-12) * out.force);  // the bound it is held at, rounded
       CHECK((is_finite(out.force) && out.force >= 0 && is_finite(out.stiffness) && out.radius >= 0));
       tick.displace(display, u.data(), 3);
-      // The field is held at 4 d on the solve mesh's vertices, which are all that are drawn.
+      // The field is held at 4 d on the boundary element mesh's vertices, which are all that are drawn.
       for (const double x : u) CHECK(std::abs(x) < 4.5 * depth);
     }
   CHECK(tick.solve(on_flank(std::numeric_limits<double>::quiet_NaN())).force == 0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <palpate/response/response_contact.hpp>
 #include <palpate/response/save.hpp>
-#include <palpate/response/setup/load_places.hpp>
+#include <palpate/response/setup/load_positions.hpp>
 
 #include "support/check.hpp"
 #include "support/no_heap.hpp"
@@ -21,15 +21,15 @@ TEST_CASE("large block: flat punch and Hertz tend to the half-space, nu = 0, 0.3
     ResponseTick<1> tick(field, {.second_order = false});
     const double a = 1e-3, mu = 1e6 / (2 * (1 + nu)), d = 1e-5;
     const ResponseContact<double> punch{
-        .place = V(0.004, 0.1, 0.003), .normal = V::UnitY(), .radius = a, .displacement = V(0, -d, 0)};
+        .position = V(0.004, 0.1, 0.003), .normal = V::UnitY(), .radius = a, .displacement = V(0, -d, 0)};
     V F;
     tick.solve(&punch, 1, &F);
     const double half_space =
         nu < 0.5 ? 4 * mu * a * std::log(3 - 4 * nu) / (1 - 2 * nu) * d : 8 * mu * a * d;
     CHECK_RELATIVE(-F.y(), half_space, 0.05);  // the finite block: about a / size, 1-3 %
     CHECK(std::abs(F.x()) < 0.03 * std::abs(F.y()));
-    const auto ball = tick.solve(
-        SphereContact<double>{.place = punch.place, .normal = V::UnitY(), .radius = 0.005, .depth = 1e-5});
+    const auto ball = tick.solve(SphereContact<double>{
+        .position = punch.position, .normal = V::UnitY(), .radius = 0.005, .depth = 1e-5});
     CHECK_RELATIVE(ball.force, 4.0 / 3 * 1e6 / (1 - nu * nu) * std::sqrt(0.005) * std::pow(1e-5, 1.5),
                    0.03);  // ditto, a = 0.2 mm
   }
@@ -40,15 +40,15 @@ TEST_CASE("field: patch moves by d, fixed vertices rest, reciprocity, forces of 
   ResponseTick<2> tick(field);
   const V n2 = V(0.03 / 0.0036, 0.034641016151377546 / 0.0016, 0).normalized();
   const ResponseContact<double> two[2] = {
-      {.place = V(-0.02, 0.037712361663282534, 0),
+      {.position = V(-0.02, 0.037712361663282534, 0),
        .normal = V(-0.02 / 0.0036, 0.037712361663282534 / 0.0016, 0).normalized(),
        .radius = 0.005,
        .displacement = V(0, -0.001, 0)},
-      {.place = V(0.03, 0.034641016151377546, 0),
+      {.position = V(0.03, 0.034641016151377546, 0),
        .normal = n2,
        .radius = 0.005,
        .displacement = -0.002 * n2}};
-  const std::vector<V> points = {two[0].place, two[1].place, V(0, -0.04, 0), V(0.06, 0, 0)};
+  const std::vector<V> points = {two[0].position, two[1].position, V(0, -0.04, 0), V(0.06, 0, 0)};
   const ResponseDisplay display = ResponseDisplay(field, points);
   V F[2], again[2];
   std::vector<float> u(4 * points.size(), 7.f), v(4 * points.size());
@@ -62,15 +62,15 @@ TEST_CASE("field: patch moves by d, fixed vertices rest, reciprocity, forces of 
   CHECK_ABSOLUTE(u[1], -0.001, 1e-9);
   CHECK_ABSOLUTE(u[4], -0.002 * n2.x(), 1e-9);
   CHECK((u[8] == 0.f && u[9] == 0.f && u[10] == 0.f));
-  // Reciprocity of the columns, before the system is made symmetric: discretisation error of 140 vertices, 6
-  // %.
+  // Reciprocity of the influence functions, before the system is made symmetric: discretisation error of 140
+  // vertices, 6 %.
   const auto block = [&](std::size_t i, std::size_t j) {
     Mat3<double> w;
     for (std::size_t l = 0; l < 3; ++l) w.col(Eigen::Index(l)) = field.at(i, j, l);
     return w;
   };
   const auto rests = [&](std::size_t k) {
-    const TouchNode& node = field.touch().nodes().at(k);
+    const LoadNode& node = field.load_mesh().nodes().at(k);
     bool any = false;
     for (std::size_t c = 0; c < 3; ++c)
       any = any || (node.part[Eigen::Index(c)] > 0 &&
@@ -78,7 +78,7 @@ TEST_CASE("field: patch moves by d, fixed vertices rest, reciprocity, forces of 
     return any;
   };
   double difference = 0, norm = 0;
-  for (std::size_t i = 0; i < field.touch().nodes().size(); ++i)
+  for (std::size_t i = 0; i < field.load_mesh().nodes().size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       if (rests(i) || rests(j)) continue;
       difference += (block(i, j) - block(j, i).transpose()).squaredNorm();
@@ -139,9 +139,9 @@ TEST_CASE(
   const auto& v = bowl.mesh.vertices;
   for (const auto& t : bowl.mesh.triangles)
     held.push_back((v[t[0]].y() + v[t[1]].y() + v[t[2]].y()) / 3 < bowl.held_below);
-  const SolveMesh solve = make_solve_mesh(SmoothSurface(bowl.mesh), held, {.vertices = 200});
+  const ElementMesh solve = make_element_mesh(SmoothSurface(bowl.mesh), held, {.vertices = 200});
   const TriangleBvh<double> body(bowl.mesh);
-  const TouchMesh touch = detail::LoadPlaces(solve).touch_mesh();
+  const LoadMesh touch = detail::LoadPositions(solve).load_mesh();
   for (const auto& node : touch.nodes()) CHECK(std::sqrt(body.closest(node.source).distance2) < 1e-9);
   for (const auto& t : touch.triangles()) {
     const auto &p = touch.nodes()[t[0]], &q = touch.nodes()[t[1]], &r = touch.nodes()[t[2]];
@@ -165,9 +165,9 @@ TEST_CASE("bad input: reported at set-up, zero in a tick") {
   const ResponseField field(mesh, base, {.E = 1, .mesh = {.vertices = 40}, .threads = 1});
   ResponseTick<1> tick(field);
   const double bad = std::numeric_limits<double>::quiet_NaN();
-  for (const auto& contact :
-       {ResponseContact<double>{.place = V(bad, 0, 0), .radius = 0.1}, ResponseContact<double>{.radius = -1},
-        ResponseContact<double>{.normal = V(0, 0, 9), .radius = 0.1}}) {
+  for (const auto& contact : {ResponseContact<double>{.position = V(bad, 0, 0), .radius = 0.1},
+                              ResponseContact<double>{.radius = -1},
+                              ResponseContact<double>{.normal = V(0, 0, 9), .radius = 0.1}}) {
     V F(1, 1, 1);
     tick.solve(&contact, 1, &F);
     CHECK(F == V::Zero());
@@ -181,9 +181,9 @@ TEST_CASE("tick: no heap, no memory of what was before, coinciding contacts, sur
   const ResponseField field = test::ellipsoid_field(0.3, 60);
   const V n = V::UnitY();
   const ResponseContact<double> one{
-      .place = V(0, 0.04, 0), .normal = n, .radius = 0.004, .displacement = V(0.0005, -0.002, 0)};
+      .position = V(0, 0.04, 0), .normal = n, .radius = 0.004, .displacement = V(0.0005, -0.002, 0)};
   const ResponseContact<double> far{
-      .place = V(0.06, 0, 0), .normal = V::UnitX(), .radius = 0.02, .displacement = V(-0.002, 0, 0)};
+      .position = V(0.06, 0, 0), .normal = V::UnitX(), .radius = 0.02, .displacement = V(-0.002, 0, 0)};
   const std::vector<V> points = {V(0.01, 0.039, 0.001), V(-0.05, 0.01, 0.01)};
   const ResponseDisplay display(field, points);
   ResponseTick<3> tick(field), fresh(field);
@@ -222,7 +222,7 @@ TEST_CASE("saved and loaded: the same bits; bytes that are not a saved field are
   const std::vector<std::byte> bytes = save_response_field(field);
   const ResponseField loaded = load_response_field(bytes);
   CHECK(save_response_field(loaded) == bytes);
-  const ResponseContact<double> one{.place = V(0.01, 0.1, 0.02),
+  const ResponseContact<double> one{.position = V(0.01, 0.1, 0.02),
                                     .normal = V::UnitY(),
                                     .radius = 0.01,
                                     .displacement = V(0.0005, -0.002, 0)};

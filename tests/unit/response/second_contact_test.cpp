@@ -17,7 +17,7 @@ const ResponseField& cube() {
   return field;
 }
 Contact pressed(double x, double radius, const V& d) {
-  return {.place = V(x, 0.06, 0.03), .normal = V::UnitY(), .radius = radius, .displacement = d};
+  return {.position = V(x, 0.06, 0.03), .normal = V::UnitY(), .radius = radius, .displacement = d};
 }
 // Force on the first contact, and displacements within both patches and elsewhere.
 struct Answer {
@@ -94,7 +94,7 @@ TEST_CASE(
   const Contact contacts[2] = {pressed(0.015, 0.003, V(2e-4, -1e-3, 1e-4)),
                                pressed(0.04, 0.003, V(0, -1e-3, 0))};
   for (std::size_t i = 0; i < 2; ++i) {
-    system.place(i, {.x = contacts[i].place,
+    system.place(i, {.x = contacts[i].position,
                      .m = -contacts[i].normal,
                      .d = contacts[i].displacement,
                      .rotation = V::Zero(),
@@ -104,7 +104,7 @@ TEST_CASE(
   const detail::Indenter& c = system.placed(1).tool;
   const V bent = detail::coupling_of_moments(cube(), system.placed(0), system.placed(1)).transpose() *
                  system.solved(0).P;
-  const double step = 0.5 * cube().mesh().length;  // over which the loads' columns are slopes
+  const double step = 0.5 * cube().mesh().length;  // over which the loads' influence functions are slopes
   std::vector<V> points;
   for (const V& t : {c.t1(), c.t2()})
     for (const double side : {-step, step}) points.push_back(c.x + side * t);
@@ -119,7 +119,7 @@ TEST_CASE(
   };
   const V seen(0.5 * (slope(0).dot(c.t1()) + slope(1).dot(c.t2())), slope(0).dot(c.m), slope(1).dot(c.m));
   MESSAGE("spread and slopes: by the loads ", bent.transpose(), ", seen ", seen.transpose());
-  // The columns' slopes are fitted to neighbours an edge away, the field's taken over one: 8 % apart on this
-  // mesh of 180.
+  // The influence functions' slopes are fitted to neighbours an edge away, the field's taken over one: 8 %
+  // apart on this mesh of 180.
   CHECK((bent - seen).norm() < 0.15 * seen.norm());
 }

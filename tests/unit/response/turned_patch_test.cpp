@@ -27,7 +27,7 @@ Loads solved(const ResponseField& field, const Contact& contact, bool second_ord
   return out;
 }
 Contact on_top(double x, double radius, const V& d, const V& rotation) {
-  return {.place = V(x, 0.05, 0),
+  return {.position = V(x, 0.05, 0),
           .normal = V::UnitY(),
           .radius = radius,
           .displacement = d,
@@ -59,14 +59,14 @@ TEST_CASE("the patch goes with the tool: displacement and rotation, exactly") {
   const Mat3<double> R = Eigen::AngleAxis<double>(turn.norm(), turn.normalized()).toRotationMatrix();
   std::vector<V> points;
   for (int i = 0; i < 12; ++i)
-    points.push_back(contact.place + 0.0058 * V(std::cos(0.5 * i), 0, std::sin(0.5 * i)) * (i % 3) / 2);
+    points.push_back(contact.position + 0.0058 * V(std::cos(0.5 * i), 0, std::sin(0.5 * i)) * (i % 3) / 2);
   std::vector<double> u(3 * points.size());
   ResponseTick<1> tick(block());
   V F;
   tick.solve(&contact, 1, &F);
   tick.displace(ResponseDisplay(block(), points), u.data(), 3);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const V r = points[i] - contact.place, exact = d + R * r - r;
+    const V r = points[i] - contact.position, exact = d + R * r - r;
     CHECK((V(u[3 * i], u[3 * i + 1], u[3 * i + 2]) - exact).norm() < 1e-8);  // floats of millimetres
   }
 }
@@ -107,7 +107,7 @@ TEST_CASE("twisted on a bent surface: finite elements") {
       normal = place.cwiseQuotient(axes.cwiseProduct(axes)).normalized();
   const ResponseField field(test::ellipsoid_mesh(axes, 14), [](const V& p) { return p.y() <= -0.028; },
                             {.E = 1e6, .nu = 0.49, .mesh = {.vertices = 260}, .threads = 1});
-  const Contact contact{.place = place, .normal = normal, .radius = 0.006, .rotation = -0.05 * normal};
+  const Contact contact{.position = place, .normal = normal, .radius = 0.006, .rotation = -0.05 * normal};
   const V torque = solved(field, contact, true).torque, truth(-0.00839990622, -0.0143690087, 0);
   MESSAGE("torque ", torque.norm(), " of ", truth.norm());
   CHECK((torque - truth).norm() < 0.03 * truth.norm());  // the goal for forces; 1.2 % met
@@ -137,7 +137,7 @@ TEST_CASE("two contacts: what turning one does to the other, and moving the othe
   const auto answer = [&](const V& rotation, const V& more) {
     const Contact both[2] = {
         on_top(-0.008, 0.005, d, rotation),
-        {.place = V(0.008, 0.05, 0.002), .normal = V::UnitY(), .radius = 0.005, .displacement = d + more}};
+        {.position = V(0.008, 0.05, 0.002), .normal = V::UnitY(), .radius = 0.005, .displacement = d + more}};
     V F[2], T[2];
     tick.solve(both, 2, F, T);
     return Loads{F[1], T[0]};

@@ -21,7 +21,7 @@ const ResponseField& block() {
   return field;
 }
 Contact pressed(double x, double radius, const V& d) {
-  return {.place = V(x, 0.05, 0), .normal = V::UnitY(), .radius = radius, .displacement = d};
+  return {.position = V(x, 0.05, 0), .normal = V::UnitY(), .radius = radius, .displacement = d};
 }
 }  // namespace
 
@@ -85,7 +85,7 @@ TEST_CASE(
   const ResponseField wall(mesh, [](const V& p) { return p.y() <= 1e-6; },
                            {.E = 1e6, .nu = 0.49, .mesh = {.vertices = 220}, .threads = 1});
   const Contact push{
-      .place = V(0.01, 0.04, 0), .normal = V::UnitX(), .radius = 0.005, .displacement = V(-1e-3, 0, 0)};
+      .position = V(0.01, 0.04, 0), .normal = V::UnitX(), .radius = 0.005, .displacement = V(-1e-3, 0, 0)};
   ResponseTick<1> tick(wall, {.second_order = false});
   V F;
   tick.solve(&push, 1, &F);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Boundary elements: from a solve mesh to displacements by one dense factorisation. Set-up only.
+/// @file Boundary elements: from a boundary element mesh to displacements by one dense factorisation. Set-up
+/// only.
 ///
 /// Somigliana's identity at every vertex x, u and geometry quadratic, known t linear on each triangle, mu =
 /// 1:
 ///     c u(x) + int T(x,y) u(y) dS = int U(x,y) t(y) dS       ->       H u = G t
-/// u at the middles of edges is no unknown: the neighbours tell it (edge_bend.hpp). So they do with the
+/// u at the middles of edges is no unknown: the neighbours tell it (mid_edge_fit.hpp). So they do with the
 /// unknown t of the fixed region, where none of them is free. A rigid translation has no traction, so H's
 /// diagonal block is minus the sum of the others in its row: neither c nor a principal value is computed.
 /// Unknown: u at free vertices, t at fixed ones. Source: [brebbia1984].
@@ -14,9 +15,9 @@
 #include <palpate/elasticity/kelvin.hpp>
 #include <palpate/response/setup/constants.hpp>
 #include <palpate/response/setup/make_element_mesh.hpp>
+#include <palpate/response/setup/mid_edge_fit.hpp>
 #include <palpate/response/setup/parallel.hpp>
 #include <palpate/response/setup/quadrature.hpp>
-#include <palpate/response/tick/edge_bend.hpp>
 
 #include <Eigen/LU>
 
@@ -26,7 +27,7 @@ namespace detail {
 
 using Matrix = Eigen::MatrixXd;
 
-/// Quadratic triangle of the solve mesh: three corners, three middles of edges.
+/// Quadratic triangle of the boundary element mesh: three corners, three middles of edges.
 struct Element {
   Vec3d corner[3], middle[3];
   Vec3d centre;
@@ -48,7 +49,7 @@ struct Element {
 };
 
 struct ElementPoint {
-  Vec3d x, normal;  ///< place; outward normal times the point's share of area [m], [m^2]
+  Vec3d x, normal;  ///< position; outward normal times the point's share of area [m], [m^2]
   Vec3d weight;     ///< barycentric
   double area;
 };
@@ -61,8 +62,8 @@ void element_points(const Element& e, const Rule& rule, std::vector<ElementPoint
   }
 }
 
-/// Points on the element crowded towards its place nearest to `apex` (barycentric): the triangle is cut there
-/// in three.
+/// Points on the element crowded towards its position nearest to `apex` (barycentric): the triangle is cut
+/// there in three.
 template <std::size_t N>
 void polar_points(const Element& e, const Vec3d& apex, std::vector<ElementPoint>& out) {
   for (int c = 0; c < 3; ++c) {
@@ -76,7 +77,7 @@ void polar_points(const Element& e, const Vec3d& apex, std::vector<ElementPoint>
 /// H, G and the factorised system of one body. Vertices n, nodes k, mu = 1.
 class BoundaryElements {
  public:
-  BoundaryElements(SolveMesh mesh, double nu, unsigned threads)
+  BoundaryElements(ElementMesh mesh, double nu, unsigned threads)
       : mesh_(std::move(mesh)), bend_(mesh_), kelvin_(nu), threads_(threads) {
     if (!(nu >= 0 && nu <= 0.5)) fail("BoundaryElements", "nu must be in [0, 1/2]", nu);
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
@@ -96,8 +97,8 @@ class BoundaryElements {
     assemble();
   }
 
-  [[nodiscard]] const SolveMesh& mesh() const noexcept { return mesh_; }
-  [[nodiscard]] const detail::EdgeBend& bend() const noexcept { return bend_; }
+  [[nodiscard]] const ElementMesh& mesh() const noexcept { return mesh_; }
+  [[nodiscard]] const detail::MidEdgeFit& bend() const noexcept { return bend_; }
   [[nodiscard]] const Kelvin& kelvin() const noexcept { return kelvin_; }
   [[nodiscard]] const std::vector<detail::Element>& elements() const noexcept { return elements_; }
   [[nodiscard]] unsigned threads() const noexcept { return threads_; }
@@ -121,7 +122,7 @@ class BoundaryElements {
   }
   [[nodiscard]] const detail::Matrix& H_fixed() const noexcept { return H_fixed_; }  ///< 3n x 3 fixed
 
-  /// Solves in place. Each column: in, G t - H_fixed u_fixed; out, u at free vertices, t at fixed ones.
+  /// Solves in position. Each column: in, G t - H_fixed u_fixed; out, u at free vertices, t at fixed ones.
   void solve(detail::Matrix& columns) const {
     const Eigen::Index block = detail::setup::solved_together, count = (columns.cols() + block - 1) / block;
     detail::parallel_for(static_cast<std::size_t>(count), threads_, [&](std::size_t b) {
@@ -251,8 +252,8 @@ class BoundaryElements {
     quarter(x, e, {m[0], m[1], m[2]}, share / 4, level + 1, add, scratch);
   }
 
-  SolveMesh mesh_;
-  detail::EdgeBend bend_;
+  ElementMesh mesh_;
+  detail::MidEdgeFit bend_;
   Kelvin kelvin_;
   unsigned threads_;
   std::vector<detail::Element> elements_;

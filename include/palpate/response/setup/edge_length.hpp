@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Edge length that the solve mesh should have at each place of the surface. Set-up only.
+/// @file Edge length that the boundary element mesh should have at each position of the surface. Set-up only.
 ///
 ///     B(x) = min over y of (clamp(t(y), f h, h) + g dist(x, y))
 ///     L(x) = min(B, 3/4 B + g dist(x, crease), r B + g dist(x, rim), 2 r B + g dist(x, rim along a crease))

@@ -19,8 +19,8 @@ struct RemeshParams {
   double growth = 0.35;    ///< g: edge length gained per distance from the rim, a crease or a thin part [-]
 };
 
-/// The solve mesh. Lengths [m].
-struct SolveMesh {
+/// The boundary element mesh. Lengths [m].
+struct ElementMesh {
   struct Node {
     std::uint32_t vertex;
     Vec3<double> normal;  ///< outward, unit

@@ -5,8 +5,8 @@
 ///
 /// Vertices carry displacement. A *node* is a vertex with one of the smooth parts that meet there: a vertex
 /// inside a smooth part is one node, on a cube's edge two, at its corner three. Nodes carry normals,
-/// tractions and the places where loads are put. Triangles are flat or, for geometry, quadratic with a point
-/// at the middle of each edge.
+/// tractions and the positions where loads are put. Triangles are flat or, for geometry, quadratic with a
+/// point at the middle of each edge.
 
 #include <palpate/response/setup/remesh.hpp>
 
@@ -78,8 +78,8 @@ namespace detail {
 
 /// A piece that nothing holds can move freely: the boundary equation has no single solution. Hollows need not
 /// be held.
-inline void require_each_piece_held(const MeshData<double>& mesh,
-                                    const std::vector<std::uint8_t>& fixed_triangle) {
+inline void require_each_piece_fixed(const MeshData<double>& mesh,
+                                     const std::vector<std::uint8_t>& fixed_triangle) {
   std::vector<std::uint32_t> parent(mesh.vertices.size());
   for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = v;
   const auto root = [&](std::uint32_t v) {
@@ -102,13 +102,14 @@ inline void require_each_piece_held(const MeshData<double>& mesh,
   }
   for (std::size_t v = 0; v < volume.size(); ++v)
     if (volume[v] > 0 && !held[v])
-      fail_at("make_solve_mesh", "each piece of the mesh must be held somewhere: nothing holds the one",
+      fail_at("make_element_mesh", "each piece of the mesh must be held somewhere: nothing holds the one",
               "with vertex", v);
 }
 
-/// Geometry of the solve mesh from a remeshed surface: nodes, normals, edge middles, source places.
-[[nodiscard]] inline SolveMesh finish_solve_mesh(const SmoothSurface& surface, const Remesher& made) {
-  SolveMesh m;
+/// Geometry of the boundary element mesh from a remeshed surface: nodes, normals, edge middles, source
+/// positions.
+[[nodiscard]] inline ElementMesh finish_element_mesh(const SmoothSurface& surface, const Remesher& made) {
+  ElementMesh m;
   m.vertices = made.p_;
   m.triangles = made.t_;
   m.fixed_triangle = made.fixed_;
@@ -117,8 +118,9 @@ inline void require_each_piece_held(const MeshData<double>& mesh,
   for (std::size_t t = 0; t < m.triangles.size(); ++t)
     if (m.fixed_triangle[t])
       for (auto v : m.triangles[t]) m.fixed_vertex[v] = 1;
-  const std::vector<MeshEdge> edges = mesh_edges(m.triangles, "SolveMesh");
-  // A crease of the solve mesh is a kept edge that the user's mesh has as a crease there: the normals differ.
+  const std::vector<MeshEdge> edges = mesh_edges(m.triangles, "ElementMesh");
+  // A crease of the boundary element mesh is a kept edge that the user's mesh has as a crease there: the
+  // normals differ.
   const auto corner_normal = [&](std::uint32_t t, std::uint32_t c) {
     const auto& k = m.triangles[t];
     const Vec3d centre = (m.vertices[k[0]] + m.vertices[k[1]] + m.vertices[k[2]]) / 3;
@@ -147,7 +149,7 @@ inline void require_each_piece_held(const MeshData<double>& mesh,
     for (std::uint32_t c = 0; c < 3; ++c) {
       const std::uint32_t v = m.triangles[t][c], k = fan[3 * t + c];
       m.nodes_of[t][c] = k;
-      SolveMesh::Node& node = m.nodes[k];
+      ElementMesh::Node& node = m.nodes[k];
       if (node.vertex == ~0u) ++parts[v];
       node.vertex = v;
       node.normal += on_crease[v] ? corner_normal(t, c) : surface.normal_at(m.vertices[v]);
@@ -158,7 +160,7 @@ inline void require_each_piece_held(const MeshData<double>& mesh,
     }
   }
   for (std::uint32_t k = 0; k < count; ++k) {
-    SolveMesh::Node& node = m.nodes[k];
+    ElementMesh::Node& node = m.nodes[k];
     node.normal = unit_or(node.normal, Vec3d(Vec3d::UnitZ()));
     node.size /= weight[k];
     node.crease = parts[node.vertex] > 1;
@@ -217,7 +219,7 @@ inline void require_each_piece_held(const MeshData<double>& mesh,
     }
   }
   for (std::uint32_t k = 0; k < count; ++k) {
-    SolveMesh::Node& node = m.nodes[k];
+    ElementMesh::Node& node = m.nodes[k];
     if (!node.crease) continue;
     const Vec3d in = inward[k];
     node.source += (std::min)(setup::load_inset * node.size, setup::max_load_inset * room[k]) *
@@ -228,12 +230,13 @@ inline void require_each_piece_held(const MeshData<double>& mesh,
 
 }  // namespace detail
 
-/// Makes the solve mesh. `fixed_triangle` marks triangles of the surface's mesh where the object is held.
-/// Reports a fixed region without a triangle, one that is the whole surface, and a piece that is not held.
-[[nodiscard]] inline SolveMesh make_solve_mesh(const SmoothSurface& surface,
-                                               const std::vector<std::uint8_t>& fixed_triangle,
-                                               const RemeshParams& params = {}) {
-  const char* where = "make_solve_mesh";
+/// Makes the boundary element mesh. `fixed_triangle` marks triangles of the surface's mesh where the object
+/// is held. Reports a fixed region without a triangle, one that is the whole surface, and a piece that is not
+/// held.
+[[nodiscard]] inline ElementMesh make_element_mesh(const SmoothSurface& surface,
+                                                   const std::vector<std::uint8_t>& fixed_triangle,
+                                                   const RemeshParams& params = {}) {
+  const char* where = "make_element_mesh";
   if (!(params.vertices >= 20 && params.vertices <= 5000))
     fail(where, "vertices must be in [20, 5000]", params.vertices);
   if (!(params.rim_ratio >= 0.1 && params.rim_ratio <= 1))
@@ -244,17 +247,17 @@ inline void require_each_piece_held(const MeshData<double>& mesh,
   for (auto f : fixed_triangle) held += f;
   if (held == 0) fail(where, "the fixed region must hold at least one whole triangle");
   if (held == fixed_triangle.size()) fail(where, "the fixed region must leave some triangles free");
-  detail::require_each_piece_held(surface.mesh(), fixed_triangle);
+  detail::require_each_piece_fixed(surface.mesh(), fixed_triangle);
   detail::Remesher remesher(surface, fixed_triangle, params);
   remesher.run();
-  return detail::finish_solve_mesh(surface, remesher);
+  return detail::finish_element_mesh(surface, remesher);
 }
 
-/// Fraction of the free surface's area, in [0, 1], where the body is thinner than the solve mesh's edges: on
-/// triangles whose mean edge is longer than the way from the centre, inward along the normal, to the other
-/// side. There bending comes out too stiff, by half and more, and a contact's answer is not resolved: ask for
-/// more vertices. Next to edges sharper than about 60 degrees a body is always thin.
-[[nodiscard]] inline double unresolved_area(const SolveMesh& m) {
+/// Fraction of the free surface's area, in [0, 1], where the body is thinner than the boundary element mesh's
+/// edges: on triangles whose mean edge is longer than the way from the centre, inward along the normal, to
+/// the other side. There bending comes out too stiff, by half and more, and a contact's answer is not
+/// resolved: ask for more vertices. Next to edges sharper than about 60 degrees a body is always thin.
+[[nodiscard]] inline double unresolved_area(const ElementMesh& m) {
   using detail::Vec3d;
   const TriangleBvh<double> tree(MeshData<double>{m.vertices, m.triangles});
   double all = 0, thin = 0;

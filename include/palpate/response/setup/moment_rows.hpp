@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file The rows of the patch table for loads that pull a patch apart or turn it (moment_loads.hpp). Set-up only.
+/// @file The rows of the patch table for loads that pull a patch apart or turn it (moment_loads.hpp). Set-up
+/// only.
 
 #include <palpate/response/setup/constants.hpp>
 #include <palpate/response/tick/patch_table.hpp>
@@ -21,21 +22,21 @@ namespace palpate::detail {
           -2 * normal * t1.transpose(), -2 * normal * t2.transpose()};
 }
 
-/// The table's row but for `sag`. see(node, each): each(vertex, weight) of the node's place.
+/// The table's row but for `sagitta`. see(node, each): each(vertex, weight) of the node's position.
 template <class See>
-[[nodiscard]] MomentRow find_moments(const TouchMesh& touch, std::size_t k,
-                                     std::span<const TouchMesh::Share> shares,
-                                     const InfluenceFunctions& column, const See& see) {
+[[nodiscard]] MomentRow find_moments(const LoadMesh& load_mesh, std::size_t k,
+                                     std::span<const LoadMesh::Share> shares,
+                                     const InfluenceFunctions& influence, const See& see) {
   struct Seen {
     std::uint32_t vertex;
     double weight;
     Vec3<double> q;
   };
-  const std::size_t stride = column.stride;
+  const std::size_t stride = influence.stride;
   MomentRow out;
   std::vector<Seen> seen;
   std::vector<std::pair<std::uint32_t, Vec3<double>>> nodes;
-  each_moment(touch, k, shares, [&](std::uint32_t node, const Vec3<double>& q) {
+  each_moment(load_mesh, k, shares, [&](std::uint32_t node, const Vec3<double>& q) {
     const double share = double(shares[nodes.size()].weight);
     nodes.push_back({node, q});
     see(node, [&](std::uint32_t vertex, double weight) {
@@ -46,11 +47,11 @@ template <class See>
       at->q += weight * q;
     });
   });
-  const auto loads = moment_loads(touch.nodes()[k].normal);
+  const auto loads = moment_loads(load_mesh.nodes()[k].normal);
   double mean[5][3] = {}, own[5][5] = {};
   for (const auto& [node, q] : nodes)
     for (std::size_t l = 0; l < 3; ++l) {
-      const float* c = column(node, l);
+      const float* c = influence(node, l);
       Vec3<double> sum = Vec3<double>::Zero();
       Mat3<double> moment = Mat3<double>::Zero();  // sum u q^T
       for (const Seen& s : seen) {
@@ -72,18 +73,20 @@ template <class See>
   return out;
 }
 
-/// `sag` and `droop` of a patch of radius s around node k. Of six places on the edge of a quadric's patch one
-/// is within 30 degrees of its deepest; the mean bend is known from the node's spacing on.
-inline void find_edge(const TouchMesh& touch, std::size_t k, double s, MomentRow& row) {
-  const TouchNode& node = touch.nodes()[k];
+/// `sagitta` and `mean_sagitta` of a patch of radius s around node k. Of six positions on the edge of a
+/// quadric's patch one is within 30 degrees of its deepest; the mean bend is known from the node's spacing
+/// on.
+inline void find_edge(const LoadMesh& load_mesh, std::size_t k, double s, MomentRow& row) {
+  const LoadNode& node = load_mesh.nodes()[k];
   const Vec3<double> t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
   const auto each_depth = [&](double radius, const auto& each) {
     for (std::size_t i = 0; i < 6; ++i) {
       const double angle = double(i) * std::numbers::pi / 3;
       const Vec3<double> x = node.source + radius * (std::cos(angle) * t1 + std::sin(angle) * t2);
-      const TouchPlace at = touch.locate(x);
+      const LoadPosition at = load_mesh.locate(x);
       Vec3<double> y = Vec3<double>::Zero();
-      for (std::size_t c = 0; c < 3; ++c) y += at.weight[Eigen::Index(c)] * touch.nodes()[at.node[c]].source;
+      for (std::size_t c = 0; c < 3; ++c)
+        y += at.weight[Eigen::Index(c)] * load_mesh.nodes()[at.node[c]].source;
       each((x - y).dot(node.normal));
     }
   };
@@ -91,8 +94,8 @@ inline void find_edge(const TouchMesh& touch, std::size_t k, double s, MomentRow
   each_depth(s, [&](double depth) { deepest = (std::max)(deepest, depth); });
   const double known = (std::max)(s, node.spacing), less = s / known;
   each_depth(known, [&](double depth) { sum += depth; });
-  row.sag = static_cast<float>(setup::deepest_edge * deepest);
-  row.droop = static_cast<float>(less * less * sum / 6);
+  row.sagitta = static_cast<float>(setup::deepest_edge * deepest);
+  row.mean_sagitta = static_cast<float>(less * less * sum / 6);
 }
 
 }  // namespace palpate::detail

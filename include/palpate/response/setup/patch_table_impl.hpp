@@ -12,14 +12,14 @@ namespace palpate {
 
 namespace detail {
 
-[[nodiscard]] inline Vec3<double> node_tangent(const TouchMesh& touch, std::size_t k, std::size_t number) {
-  const Vec3<double>& n = touch.nodes()[k].normal;
+[[nodiscard]] inline Vec3<double> node_tangent(const LoadMesh& load_mesh, std::size_t k, std::size_t number) {
+  const Vec3<double>& n = load_mesh.nodes()[k].normal;
   const Vec3<double> t1 = perpendicular(n);
   return number == 1 ? t1 : Vec3<double>(n.cross(t1));
 }
-[[nodiscard]] inline Eigen::Vector4d in_tangents(const TouchMesh& touch, std::size_t k,
+[[nodiscard]] inline Eigen::Vector4d in_tangents(const LoadMesh& load_mesh, std::size_t k,
                                                  const Vec3<double>& tilt) {
-  return {0, tilt.dot(node_tangent(touch, k, 1)), tilt.dot(node_tangent(touch, k, 2)), 0};
+  return {0, tilt.dot(node_tangent(load_mesh, k, 1)), tilt.dot(node_tangent(load_mesh, k, 2)), 0};
 }
 [[nodiscard]] inline Vec3<double> read_vertex(const float* c, std::size_t stride, std::uint32_t v) noexcept {
   return {double(c[v]), double(c[stride + v]), double(c[2 * stride + v])};
@@ -33,13 +33,13 @@ inline void add_weight(std::vector<NodeWeight>& list, std::uint32_t node, double
     found->weight += weight;
 }
 
-// Weights of the solve mesh's vertices in the displacement at each node's place.
-[[nodiscard]] inline std::vector<std::vector<NodeWeight>> vertices_at_nodes(const SolveMesh& mesh,
+// Weights of the boundary element mesh's vertices in the displacement at each node's position.
+[[nodiscard]] inline std::vector<std::vector<NodeWeight>> vertices_at_nodes(const ElementMesh& mesh,
                                                                             const MidEdgeTable& bends,
-                                                                            const TouchMesh& touch) {
-  std::vector<std::vector<NodeWeight>> out(touch.nodes().size());
+                                                                            const LoadMesh& load_mesh) {
+  std::vector<std::vector<NodeWeight>> out(load_mesh.nodes().size());
   for (std::size_t k = 0; k < out.size(); ++k) {
-    const TouchNode& node = touch.nodes()[k];
+    const LoadNode& node = load_mesh.nodes()[k];
     const Vec3<double> l = node.part.cast<double>();
     for (std::size_t c = 0; c < 3; ++c) {
       const std::size_t d = (c + 1) % 3;
@@ -54,8 +54,9 @@ inline void add_weight(std::vector<NodeWeight>& list, std::uint32_t node, double
 }
 
 // The stuck disc's weight around the node.
-[[nodiscard]] inline std::vector<NodeWeight> patch_around(const TouchMesh& touch, std::size_t k, double s) {
-  const TouchNode& node = touch.nodes()[k];
+[[nodiscard]] inline std::vector<NodeWeight> patch_around(const LoadMesh& load_mesh, std::size_t k,
+                                                          double s) {
+  const LoadNode& node = load_mesh.nodes()[k];
   std::vector<NodeWeight> patch;
   if (!(s > 0)) {
     patch.push_back({static_cast<std::uint32_t>(k), 1});
@@ -63,7 +64,7 @@ inline void add_weight(std::vector<NodeWeight>& list, std::uint32_t node, double
   }
   const Vec3<double> t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
   for (const auto& p : flat_punch_points()) {
-    const TouchPlace at = touch.locate(node.source + s * (p[0] * t1 + p[1] * t2));
+    const LoadPosition at = load_mesh.locate(node.source + s * (p[0] * t1 + p[1] * t2));
     for (std::size_t c = 0; c < 3; ++c)
       add_weight(patch, at.node[c], at.weight[Eigen::Index(c)] / double(flat_punch_points().size()));
   }
@@ -72,10 +73,10 @@ inline void add_weight(std::vector<NodeWeight>& list, std::uint32_t node, double
 
 }  // namespace detail
 
-PALPATE_SETUP_INLINE PatchTable::PatchTable(const SolveMesh& mesh, const MidEdgeTable& bends,
-                                            const TouchMesh& touch, unsigned threads,
-                                            const InfluenceFunctions& column)
-    : unit_(unit(touch)) {
+PALPATE_SETUP_INLINE PatchTable::PatchTable(const ElementMesh& mesh, const MidEdgeTable& bends,
+                                            const LoadMesh& load_mesh, unsigned threads,
+                                            const InfluenceFunctions& influence)
+    : unit_(unit(load_mesh)) {
   Vec3<double> low = mesh.vertices[0], high = low;
   for (const auto& v : mesh.vertices) {
     low = low.cwiseMin(v);
@@ -83,28 +84,28 @@ PALPATE_SETUP_INLINE PatchTable::PatchTable(const SolveMesh& mesh, const MidEdge
   }
   levels_ = 2;
   while (radius2(levels_ - 1) < 0.25 * (high - low).squaredNorm()) ++levels_;
-  const std::size_t n = touch.nodes().size(), stride = column.stride;
-  const std::vector<std::vector<detail::NodeWeight>> at = detail::vertices_at_nodes(mesh, bends, touch);
+  const std::size_t n = load_mesh.nodes().size(), stride = influence.stride;
+  const std::vector<std::vector<detail::NodeWeight>> at = detail::vertices_at_nodes(mesh, bends, load_mesh);
   std::vector<std::vector<detail::NodeWeight>> loaded(n * levels_), seen(n * levels_);  // nodes; vertices
   detail::parallel_for(n * levels_, threads, [&](std::size_t i) {
-    loaded[i] = detail::patch_around(touch, i / levels_, std::sqrt(radius2(i % levels_)));
+    loaded[i] = detail::patch_around(load_mesh, i / levels_, std::sqrt(radius2(i % levels_)));
     for (const detail::NodeWeight& w : loaded[i])
       for (const detail::NodeWeight& v : at[w.node]) detail::add_weight(seen[i], v.node, w.weight * v.weight);
   });
-  for (const auto& list : loaded) keep_solved(touch, list);
+  for (const auto& list : loaded) keep_solved(load_mesh, list);
   moments_.resize(n * levels_);
   detail::parallel_for(n * levels_, threads, [&](std::size_t i) {
     const std::size_t k = i / levels_;
     const auto see = [&](std::uint32_t node, const auto& each) {
       for (const detail::NodeWeight& v : at[node]) each(v.node, v.weight);
     };
-    moments_[i] = detail::find_moments(touch, k, spread(k, i % levels_), column, see);
-    detail::find_edge(touch, k, std::sqrt(radius2(i % levels_)), moments_[i]);
+    moments_[i] = detail::find_moments(load_mesh, k, spread(k, i % levels_), influence, see);
+    detail::find_edge(load_mesh, k, std::sqrt(radius2(i % levels_)), moments_[i]);
   });
   std::vector<std::vector<std::uint32_t>> around(n);  // triangles
-  for (std::uint32_t t = 0; t < touch.triangles().size(); ++t)
-    for (auto k : touch.triangles()[t]) around[k].push_back(t);
-  own_.resize(touch.triangles().size() * levels_);
+  for (std::uint32_t t = 0; t < load_mesh.triangles().size(); ++t)
+    for (auto k : load_mesh.triangles()[t]) around[k].push_back(t);
+  own_.resize(load_mesh.triangles().size() * levels_);
   second_.resize(n * levels_);
   std::vector<std::array<Mat3<double>, 9>> pairs(own_.size());
   detail::parallel_for(n, threads, [&](std::size_t k) {
@@ -114,7 +115,7 @@ PALPATE_SETUP_INLINE PatchTable::PatchTable(const SolveMesh& mesh, const MidEdge
       for (auto v : needed) slot[v] = ~0u;
       needed.clear();
       for (auto t : around[k])
-        for (auto i : touch.triangles()[t])
+        for (auto i : load_mesh.triangles()[t])
           for (const detail::NodeWeight& w : seen[i * levels_ + level]) {
             if (slot[w.node] != ~0u) continue;
             slot[w.node] = static_cast<std::uint32_t>(needed.size());
@@ -123,12 +124,12 @@ PALPATE_SETUP_INLINE PatchTable::PatchTable(const SolveMesh& mesh, const MidEdge
       field.assign(needed.size(), Mat3<double>::Zero());
       for (const detail::NodeWeight& w : loaded[k * levels_ + level])
         for (std::size_t l = 0; l < 3; ++l) {
-          const float* c = column(w.node, l);
+          const float* c = influence(w.node, l);
           for (std::size_t j = 0; j < needed.size(); ++j)
             field[j].col(Eigen::Index(l)) += w.weight * detail::read_vertex(c, stride, needed[j]);
         }
       for (auto t : around[k]) {
-        const auto& corner = touch.triangles()[t];
+        const auto& corner = load_mesh.triangles()[t];
         for (std::size_t i = 0; i < 3; ++i) {
           Mat3<double> mean = Mat3<double>::Zero();
           for (const detail::NodeWeight& w : seen[corner[i] * levels_ + level])
@@ -142,13 +143,13 @@ PALPATE_SETUP_INLINE PatchTable::PatchTable(const SolveMesh& mesh, const MidEdge
         for (const detail::NodeWeight& q : loaded[k * levels_ + level]) {
           const Eigen::Vector4d load =
               q.weight * (l == 1 || l == 2
-                              ? detail::in_tangents(touch, q.node, detail::node_tangent(touch, k, l))
+                              ? detail::in_tangents(load_mesh, q.node, detail::node_tangent(load_mesh, k, l))
                               : Eigen::Vector4d(Eigen::Vector4d::Unit(Eigen::Index(l))));
           for (std::size_t i = 0; i < 4; ++i)
             if (load[Eigen::Index(i)] != 0)
               for (const detail::NodeWeight& w : seen[k * levels_ + level])
                 u += load[Eigen::Index(i)] * w.weight *
-                     detail::read_vertex(column(q.node, 3 + i), stride, w.node);
+                     detail::read_vertex(influence(q.node, 3 + i), stride, w.node);
         }
         for (std::size_t i = 0; i < 3; ++i)
           second_[k * levels_ + level].mean[3 * l + i] = static_cast<float>(u[Eigen::Index(i)]);
@@ -166,14 +167,14 @@ PALPATE_SETUP_INLINE PatchTable::PatchTable(const SolveMesh& mesh, const MidEdge
   }
 }
 
-PALPATE_SETUP_INLINE void PatchTable::keep_solved(const TouchMesh& touch,
+PALPATE_SETUP_INLINE void PatchTable::keep_solved(const LoadMesh& load_mesh,
                                                   const std::vector<detail::NodeWeight>& list) {
   std::vector<detail::NodeWeight> solved;
   for (const detail::NodeWeight& w : list) {
-    if (w.node < touch.solved())
+    if (w.node < load_mesh.solved())
       detail::add_weight(solved, w.node, w.weight);
     else
-      for (const Share& s : touch.shares(w.node))
+      for (const Share& s : load_mesh.shares(w.node))
         detail::add_weight(solved, s.node, w.weight * double(s.weight));
   }
   for (const detail::NodeWeight& w : solved)
@@ -181,9 +182,9 @@ PALPATE_SETUP_INLINE void PatchTable::keep_solved(const TouchMesh& touch,
   spread_begin_.push_back(static_cast<std::uint32_t>(spread_.size()));
 }
 
-PALPATE_SETUP_INLINE double PatchTable::unit(const TouchMesh& touch) {
+PALPATE_SETUP_INLINE double PatchTable::unit(const LoadMesh& load_mesh) {
   double least = (std::numeric_limits<double>::max)();
-  for (const auto& node : touch.nodes()) least = (std::min)(least, node.spacing);
+  for (const auto& node : load_mesh.nodes()) least = (std::min)(least, node.spacing);
   return 0.25 * least * least;
 }
 

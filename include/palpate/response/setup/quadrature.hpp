@@ -66,7 +66,7 @@ template <std::size_t N>
   return rule;
 }
 
-/// N x N points crowded towards the corner `apex` of the triangle with corners at the barycentric places
+/// N x N points crowded towards the corner `apex` of the triangle with corners at the barycentric positions
 /// `corner`.
 template <std::size_t N>
 [[nodiscard]] inline std::array<TrianglePoint, N * N> duffy_rule(const Vec3<double>& apex,

@@ -11,7 +11,7 @@
 
 namespace palpate {
 
-PALPATE_SETUP_INLINE void ResponseDisplay::bind(const SolveMesh& mesh,
+PALPATE_SETUP_INLINE void ResponseDisplay::bind(const ElementMesh& mesh,
                                                 const std::vector<Vec3<double>>& points) {
   const TriangleBvh<double> tree(MeshData<double>{mesh.vertices, mesh.triangles});
   std::vector<TriangleBvh<double>::Nearest> at(points.size());

@@ -4,8 +4,8 @@
 /// @file Set-up of response_field.hpp: mesh, boundary elements, influence functions, tables. Set-up only.
 
 #include <palpate/response/response_field.hpp>
+#include <palpate/response/setup/influence_functions.hpp>
 #include <palpate/response/setup/parallel.hpp>
-#include <palpate/response/setup/response_columns.hpp>
 
 namespace palpate {
 
@@ -38,13 +38,13 @@ PALPATE_SETUP_INLINE void ResponseField::build(const MeshData<double>& mesh,
 }
 
 PALPATE_SETUP_INLINE ResponseField::ResponseField(ResponseParts parts)
-    : E_(parts.E), nu_(parts.nu), mesh_(std::move(parts.mesh)), columns_(std::move(parts.columns)) {
+    : E_(parts.E), nu_(parts.nu), mesh_(std::move(parts.mesh)), influence_(std::move(parts.influence)) {
   stride_ = padded(mesh_.vertices.size());
   const std::size_t levels = parts.second.size() / parts.nodes.size();
-  touch_ = TouchMesh(std::move(parts.nodes), std::move(parts.triangles), std::move(parts.share_begin),
-                     std::move(parts.shares));
-  table_ = PatchTable(touch_, std::move(parts.own), std::move(parts.second), std::move(parts.moments), levels,
-                      std::move(parts.spread_begin), std::move(parts.spread));
+  load_mesh_ = LoadMesh(std::move(parts.nodes), std::move(parts.triangles), std::move(parts.share_begin),
+                        std::move(parts.shares));
+  table_ = PatchTable(load_mesh_, std::move(parts.own), std::move(parts.second), std::move(parts.moments),
+                      levels, std::move(parts.spread_begin), std::move(parts.spread));
   bends_ = MidEdgeTable(mesh_, std::move(parts.edges), std::move(parts.bends), std::move(parts.raises));
   read_mesh();
 }
@@ -53,11 +53,11 @@ PALPATE_SETUP_INLINE ResponseParts ResponseField::parts() const {
   return {E_,
           nu_,
           mesh_,
-          touch_.nodes(),
-          touch_.triangles(),
-          touch_.share_begin(),
-          touch_.all_shares(),
-          columns_,
+          load_mesh_.nodes(),
+          load_mesh_.triangles(),
+          load_mesh_.share_begin(),
+          load_mesh_.all_shares(),
+          influence_,
           table_.own_rows(),
           table_.second_rows(),
           table_.moment_rows(),
@@ -81,15 +81,16 @@ PALPATE_SETUP_INLINE void ResponseField::build_from(const MeshData<double>& mesh
     if (params.progress) params.progress(done);
   };
   report(0);
-  SolveMesh solve = make_solve_mesh(SmoothSurface(mesh), fixed_triangle, params.mesh);
+  ElementMesh solve = make_element_mesh(SmoothSurface(mesh), fixed_triangle, params.mesh);
   report(0.1);
   BoundaryElements bem(std::move(solve), nu_, params.threads);
   report(0.3);
   bem.factorise();
   report(0.45);
-  const detail::LoadPlaces places(bem.mesh());
-  touch_ = places.touch_mesh();
-  const detail::Matrix w = solve_columns(bem, nu_, std::span(touch_.nodes()).first(touch_.solved()));
+  const detail::LoadPositions positions(bem.mesh());
+  load_mesh_ = positions.load_mesh();
+  const detail::Matrix w =
+      solve_influence_functions(bem, nu_, std::span(load_mesh_.nodes()).first(load_mesh_.solved()));
   report(0.9);
   for (Eigen::Index c = 0; c < w.cols(); ++c)
     for (Eigen::Index r = 0; r < w.rows(); ++r)
@@ -100,71 +101,74 @@ PALPATE_SETUP_INLINE void ResponseField::build_from(const MeshData<double>& mesh
   mesh_ = bem.mesh();
   bends_ = MidEdgeTable(mesh_, bem.bend());
   stride_ = padded(mesh_.vertices.size());
-  columns_.resize(loads * 3 * stride_ * touch_.nodes().size(), 0.f);
-  for (std::uint32_t k = 0; k < places.solved_or_held(); ++k)
+  influence_.resize(loads * 3 * stride_ * load_mesh_.nodes().size(), 0.f);
+  for (std::uint32_t k = 0; k < positions.solved_or_fixed(); ++k)
     for (std::size_t l = 0; l < 3; ++l) {
-      float* out = &columns_[(loads * k + l) * 3 * stride_];
+      float* out = &influence_[(loads * k + l) * 3 * stride_];
       for (std::uint32_t v = 0; v < mesh_.vertices.size(); ++v) {
         const Vec3<double> u =
-            k < touch_.solved()
+            k < load_mesh_.solved()
                 ? Vec3<double>(w.block<3, 1>(Eigen::Index(3 * v), Eigen::Index(3 * k + l)))
-                : Vec3<double>(-detail::near_at_vertex(mesh_, touch_.nodes()[k], v, int(l), nu_));
+                : Vec3<double>(-detail::near_at_vertex(mesh_, load_mesh_.nodes()[k], v, int(l), nu_));
         for (std::size_t i = 0; i < 3; ++i) out[i * stride_ + v] = static_cast<float>(u[Eigen::Index(i)]);
       }
     }
-  detail::parallel_for(places.solved_or_held(), params.threads, [&](std::size_t k) { derive(places, k); });
-  for (std::size_t k = places.solved_or_held(); k < touch_.nodes().size(); ++k) join(places, k);
-  table_ = PatchTable(mesh_, bends_, touch_, params.threads, influence());
-  columns_.resize(loads * 3 * stride_ * touch_.solved());
-  columns_.shrink_to_fit();
+  detail::parallel_for(positions.solved_or_fixed(), params.threads,
+                       [&](std::size_t k) { derive(positions, k); });
+  for (std::size_t k = positions.solved_or_fixed(); k < load_mesh_.nodes().size(); ++k) join(positions, k);
+  table_ = PatchTable(mesh_, bends_, load_mesh_, params.threads, functions());
+  influence_.resize(loads * 3 * stride_ * load_mesh_.solved());
+  influence_.shrink_to_fit();
   read_mesh();
   report(1);
 }
 
-// Double force, tilts and twist: derivatives of the forces' fields by their place.
-PALPATE_SETUP_INLINE void ResponseField::derive(const detail::LoadPlaces& places, std::size_t k) {
+// Double force, tilts and twist: derivatives of the forces' fields by their position.
+PALPATE_SETUP_INLINE void ResponseField::derive(const detail::LoadPositions& positions, std::size_t k) {
   using Row = Eigen::Map<const Eigen::ArrayXf>;
   const auto size = static_cast<Eigen::Index>(3 * stride_);
-  const Vec3<double> m = -touch_.nodes()[k].normal, t1 = perpendicular(Vec3<double>(-m)), t2 = t1.cross(m);
+  const Vec3<double> m = -load_mesh_.nodes()[k].normal, t1 = perpendicular(Vec3<double>(-m)),
+                     t2 = t1.cross(m);
   for (std::size_t l = 3; l < loads; ++l) {
-    Eigen::Map<Eigen::ArrayXf> sum(&columns_[(loads * k + l) * 3 * stride_], size);
-    for (const auto& w : places.gradient(k)) {
+    Eigen::Map<Eigen::ArrayXf> sum(&influence_[(loads * k + l) * 3 * stride_], size);
+    for (const auto& w : positions.gradient(k)) {
       const Vec3<double> f = l == 3   ? Vec3<double>(0.5 * w.g)
                              : l == 6 ? Vec3<double>(0.5 * m.cross(w.g))
                                       : Vec3<double>(w.g.dot(l == 4 ? t1 : t2) * m);
-      for (int i = 0; i < 3; ++i) sum += static_cast<float>(f[i]) * Row(column(w.node, std::size_t(i)), size);
+      for (int i = 0; i < 3; ++i)
+        sum += static_cast<float>(f[i]) * Row(influence(w.node, std::size_t(i)), size);
     }
   }
 }
 
 // An edge's node: the mean of its parts' loads.
-PALPATE_SETUP_INLINE void ResponseField::join(const detail::LoadPlaces& places, std::size_t k) {
+PALPATE_SETUP_INLINE void ResponseField::join(const detail::LoadPositions& positions, std::size_t k) {
   using Row = Eigen::Map<const Eigen::ArrayXf>;
   const auto size = static_cast<Eigen::Index>(3 * stride_);
-  const float share = 1.f / static_cast<float>(places.parts(k).size());
-  const Vec3<double> n = touch_.nodes()[k].normal, t1 = perpendicular(n), t2 = n.cross(t1);
+  const float share = 1.f / static_cast<float>(positions.parts(k).size());
+  const Vec3<double> n = load_mesh_.nodes()[k].normal, t1 = perpendicular(n), t2 = n.cross(t1);
   const auto sum = [&](std::size_t l) {
-    return Eigen::Map<Eigen::ArrayXf>(&columns_[(loads * k + l) * 3 * stride_], size);
+    return Eigen::Map<Eigen::ArrayXf>(&influence_[(loads * k + l) * 3 * stride_], size);
   };
-  for (auto part : places.parts(k)) {
+  for (auto part : positions.parts(k)) {
     for (std::size_t l = 0; l < loads; ++l)
-      if (l != 4 && l != 5) sum(l) += share * Row(column(part, l), size);
-    const Vec3<double> pn = touch_.nodes()[part].normal, p1 = perpendicular(pn), p2 = pn.cross(p1);
-    sum(4) += share * (static_cast<float>(t1.dot(p1)) * Row(column(part, 4), size) +
-                       static_cast<float>(t1.dot(p2)) * Row(column(part, 5), size));
-    sum(5) += share * (static_cast<float>(t2.dot(p1)) * Row(column(part, 4), size) +
-                       static_cast<float>(t2.dot(p2)) * Row(column(part, 5), size));
+      if (l != 4 && l != 5) sum(l) += share * Row(influence(part, l), size);
+    const Vec3<double> pn = load_mesh_.nodes()[part].normal, p1 = perpendicular(pn), p2 = pn.cross(p1);
+    sum(4) += share * (static_cast<float>(t1.dot(p1)) * Row(influence(part, 4), size) +
+                       static_cast<float>(t1.dot(p2)) * Row(influence(part, 5), size));
+    sum(5) += share * (static_cast<float>(t2.dot(p1)) * Row(influence(part, 4), size) +
+                       static_cast<float>(t2.dot(p2)) * Row(influence(part, 5), size));
   }
 }
 
 // What a tick reads of the mesh alone.
 PALPATE_SETUP_INLINE void ResponseField::read_mesh() {
   rotation_ = RotationTable(mesh_, stride_);
-  place_.assign(4 * stride_, 0.f);
+  position_.assign(4 * stride_, 0.f);
   for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {
     for (std::size_t i = 0; i < 3; ++i)
-      place_[i * stride_ + v] = static_cast<float>(mesh_.vertices[v][Eigen::Index(i)]);
-    place_[3 * stride_ + v] = mesh_.fixed_vertex[v] ? 0.f : 1.f;
+      position_[i * stride_ + v] = static_cast<float>(mesh_.vertices[v][Eigen::Index(i)]);
+    position_[3 * stride_ + v] = mesh_.fixed_vertex[v] ? 0.f : 1.f;
   }
 }
 

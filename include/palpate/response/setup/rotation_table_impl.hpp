@@ -10,7 +10,7 @@
 
 namespace palpate {
 
-PALPATE_SETUP_INLINE RotationTable::RotationTable(const SolveMesh& mesh, std::size_t stride) {
+PALPATE_SETUP_INLINE RotationTable::RotationTable(const ElementMesh& mesh, std::size_t stride) {
   const std::size_t n = mesh.vertices.size();
   std::vector<std::vector<std::uint32_t>> ring(n);
   std::vector<Vec3<double>> normal(n, Vec3<double>::Zero());
@@ -37,7 +37,7 @@ PALPATE_SETUP_INLINE RotationTable::RotationTable(const SolveMesh& mesh, std::si
   }
 }
 
-PALPATE_SETUP_INLINE void RotationTable::fit(const SolveMesh& mesh, std::uint32_t v,
+PALPATE_SETUP_INLINE void RotationTable::fit(const ElementMesh& mesh, std::uint32_t v,
                                              const std::vector<std::uint32_t>& ring,
                                              const std::array<Vec3<double>, 3>& axes) {
   const auto direction = [&](std::uint32_t j) -> Vec3<double> {

@@ -36,7 +36,7 @@ PALPATE_SETUP_INLINE std::uint64_t checksum(std::span<const std::byte> bytes) no
 
 inline constexpr std::size_t saved_head = 32;
 
-struct SavedNode {  // TouchNode without padding
+struct SavedNode {  // LoadNode without padding
   double normal[3], source[3], size, spacing;
   float part[3];
   std::uint32_t triangle, crease, unused;
@@ -131,7 +131,7 @@ PALPATE_SETUP_INLINE std::vector<std::byte> save_response_field(const ResponseFi
     body.put_list(rows->begin);
     body.put_list(rows->weights);
   }
-  body.put_list(parts.columns);
+  body.put_list(parts.influence);
   const std::span<const std::byte> content =
       std::span<const std::byte>(body.bytes).subspan(detail::saved_head);
   const std::uint32_t version = saved_field_version, order = 0x01020304;
@@ -175,18 +175,18 @@ PALPATE_SETUP_INLINE ResponseField load_response_field(std::span<const std::byte
   const auto nodes = in.get_list<detail::SavedNode>();
   parts.triangles = in.get_list<std::array<std::uint32_t, 3>>();
   parts.share_begin = in.get_list<std::uint32_t>();
-  parts.shares = in.get_list<TouchMesh::Share>();
+  parts.shares = in.get_list<LoadMesh::Share>();
   parts.own = in.get_list<PatchTable::Own>();
   parts.second = in.get_list<PatchTable::Second>();
   parts.moments = in.get_list<PatchTable::Moments>();
   parts.spread_begin = in.get_list<std::uint32_t>();
-  parts.spread = in.get_list<TouchMesh::Share>();
+  parts.spread = in.get_list<LoadMesh::Share>();
   parts.edges = in.get_list<MidEdgeTable::Edges>();
   for (MidEdgeTable::Rows* rows : {&parts.bends, &parts.raises}) {
     rows->begin = in.get_list<std::uint32_t>();
     rows->weights = in.get_list<MidEdgeTable::Weight>();
   }
-  parts.columns = in.get_list<float>();
+  parts.influence = in.get_list<float>();
   // Contents: a bad number here would be read out of bounds in a tick.
   const auto require = [where](bool holds, const char* rule) {
     if (!holds) fail(where, rule);
@@ -201,7 +201,7 @@ PALPATE_SETUP_INLINE ResponseField load_response_field(std::span<const std::byte
       parts.mesh.fixed_vertex.size() == n && parts.mesh.fixed_triangle.size() == parts.mesh.triangles.size(),
       "the fixed lists' lengths are not the mesh's");
   const auto require_shares = [&](const std::vector<std::uint32_t>& begin,
-                                  const std::vector<TouchMesh::Share>& shares, std::size_t lists,
+                                  const std::vector<LoadMesh::Share>& shares, std::size_t lists,
                                   std::size_t most, std::size_t solved) {
     bool good = begin.size() == lists + 1 && begin.front() == 0 && begin.back() == shares.size();
     for (std::size_t i = 0; good && i < lists; ++i)
@@ -212,9 +212,9 @@ PALPATE_SETUP_INLINE ResponseField load_response_field(std::span<const std::byte
   };
   const std::size_t unsolved = parts.share_begin.size() - 1, solved = k - unsolved;  // checked next
   require(!parts.share_begin.empty() && unsolved < k, "the shares are not the nodes'");
-  require_shares(parts.share_begin, parts.shares, unsolved, TouchMesh::most_parts, solved);
-  require(parts.columns.size() == ResponseField::loads * 3 * ResponseField::padded(n) * solved,
-          "the columns' length is not the mesh's");
+  require_shares(parts.share_begin, parts.shares, unsolved, LoadMesh::most_parts, solved);
+  require(parts.influence.size() == ResponseField::loads * 3 * ResponseField::padded(n) * solved,
+          "the influence functions' length is not the mesh's");
   const std::size_t levels = parts.second.size() / k;
   require(parts.second.size() == levels * k && parts.moments.size() == levels * k && levels >= 2 &&
               levels < 64 && parts.own.size() == levels * parts.triangles.size(),
@@ -240,28 +240,28 @@ PALPATE_SETUP_INLINE ResponseField load_response_field(std::span<const std::byte
     require(is_finite(parts.mesh.vertices.back()), "a vertex is not finite");
   }
   for (const auto& s : nodes) {
-    const TouchNode node{{s.normal[0], s.normal[1], s.normal[2]},
-                         {s.source[0], s.source[1], s.source[2]},
-                         s.size,
-                         s.spacing,
-                         s.triangle,
-                         {s.part[0], s.part[1], s.part[2]},
-                         s.crease != 0};
+    const LoadNode node{{s.normal[0], s.normal[1], s.normal[2]},
+                        {s.source[0], s.source[1], s.source[2]},
+                        s.size,
+                        s.spacing,
+                        s.triangle,
+                        {s.part[0], s.part[1], s.part[2]},
+                        s.crease != 0};
     require(s.triangle < parts.mesh.triangles.size() && is_finite(node.normal) && is_finite(node.source) &&
                 is_finite(s.size) && is_finite(s.spacing) && is_finite(node.part.sum()),
             "a node is not a triangle's");
     parts.nodes.push_back(node);
   }
   std::uint32_t beyond = 0;  // top bit: some exponent is all ones; without a branch for each of millions
-  for (float c : parts.columns) beyond |= (std::bit_cast<std::uint32_t>(c) & 0x7fffffffu) + 0x00800000u;
-  require((beyond & 0x80000000u) == 0, "a column is not finite");
+  for (float c : parts.influence) beyond |= (std::bit_cast<std::uint32_t>(c) & 0x7fffffffu) + 0x00800000u;
+  require((beyond & 0x80000000u) == 0, "an influence function is not finite");
   for (const auto& row : parts.own)
     for (const auto& pair : row.pair)
       for (float e : pair) require(is_finite(e), "a table is not finite");
   for (const auto& row : parts.second)
     for (float e : row.mean) require(is_finite(e), "a table is not finite");
   for (const auto& row : parts.moments) {
-    bool good = is_finite(row.sag) && is_finite(row.droop);
+    bool good = is_finite(row.sagitta) && is_finite(row.mean_sagitta);
     for (const auto& mean : row.mean)
       for (float e : mean) good = good && is_finite(e);
     for (float e : row.own) good = good && is_finite(e);

@@ -88,7 +88,7 @@ class SmoothSurface {
   [[nodiscard]] const std::vector<detail::MeshEdge>& edges() const noexcept { return edges_; }
   [[nodiscard]] bool is_crease(std::size_t edge) const noexcept { return crease_[edge] != 0; }
 
-  /// Position and unit normal of the smooth surface at a place of the mesh.
+  /// Position and unit normal of the smooth surface at a position of the mesh.
   void evaluate(const TriangleBvh<double>::Nearest& at, Vec3<double>& position,
                 Vec3<double>& normal) const noexcept {
     const auto& t = mesh_.triangles[at.triangle];

@@ -17,7 +17,7 @@ namespace palpate::detail {
 /// A dipole and a couple in the axes of node k.
 [[nodiscard]] inline Vec3<double> loads_of_node(const ResponseField& field, std::uint32_t k, double dipole,
                                                 const Vec3<double>& couple) noexcept {
-  const Vec3<double>& n = field.touch().nodes()[k].normal;
+  const Vec3<double>& n = field.load_mesh().nodes()[k].normal;
   const Vec3<double> t1 = perpendicular(n);
   return {dipole, couple.dot(t1), couple.dot(n.cross(t1))};
 }

@@ -28,8 +28,8 @@ class FieldSum {
         total_(3 * field.stride(), 0.f),
         second_(3 * field.stride(), 0.f),
         near_(Capacity * 3 * field.stride(), 0.f),
-        weight_(field.touch().solved(), 0.f),
-        moment_(3 * field.touch().solved(), 0.f),
+        weight_(field.load_mesh().solved(), 0.f),
+        moment_(3 * field.load_mesh().solved(), 0.f),
         rotation_(field) {
     patch_.reserve(weight_.size());
   }
@@ -56,8 +56,8 @@ class FieldSum {
     return {list.data(), static_cast<Eigen::Index>(list.size())};
   }
   // Influence function l of a solved node.
-  [[nodiscard]] Row column(std::uint32_t node, std::size_t l) const noexcept {
-    return {field_->column(node, l), static_cast<Eigen::Index>(total_.size())};
+  [[nodiscard]] Row influence(std::uint32_t node, std::size_t l) const noexcept {
+    return {field_->influence(node, l), static_cast<Eigen::Index>(total_.size())};
   }
 
   void add_contact(const ContactSystem<Capacity>& contacts, std::size_t c) noexcept {
@@ -89,7 +89,7 @@ class FieldSum {
         f += A * q;
         q.setZero();
       }
-      sum += f[0] * column(node, 0) + f[1] * column(node, 1) + f[2] * column(node, 2);
+      sum += f[0] * influence(node, 0) + f[1] * influence(node, 1) + f[2] * influence(node, 2);
     }
     for (auto node : patch_) weight_[node] = 0;
     return carried;
@@ -107,11 +107,11 @@ class FieldSum {
           (placed.regular * at.weight * loads_of_node(*field_, at.node, loads.dipole, loads.couple))
               .template cast<float>();
       if (loads.couple.squaredNorm() > 0)
-        second += g[0] * column(at.node, 3) + g[1] * column(at.node, 4) + g[2] * column(at.node, 5);
+        second += g[0] * influence(at.node, 3) + g[1] * influence(at.node, 4) + g[2] * influence(at.node, 5);
       else
-        second += g[0] * column(at.node, 3);
+        second += g[0] * influence(at.node, 3);
       if (torsion != 0)
-        second += static_cast<float>(placed.regular * at.weight * torsion) * column(at.node, 6);
+        second += static_cast<float>(placed.regular * at.weight * torsion) * influence(at.node, 6);
     }
     const double share = smooth_limit(max2(second_), tick::max_load_field2 * placed.displacement2);
     all(total_) += static_cast<float>(share) * second;

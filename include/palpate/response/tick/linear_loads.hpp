@@ -46,10 +46,10 @@ struct MovedByLoads {
   MovedByLoads(const ResponseField& field, const PlacedContact& c, const PatchMoments& m) noexcept
       : moments(&m) {
     for (std::size_t i = 0; i < 3; ++i) {
-      const std::uint32_t node = c.place.node[i];
+      const std::uint32_t node = c.position.node[i];
       const Mat3<double> mean =
-          c.regular * c.regular * c.place.weight[Eigen::Index(i)] * field.table().second(node, c.level);
-      const Vec3<double>& n = field.touch().nodes()[node].normal;
+          c.regular * c.regular * c.position.weight[Eigen::Index(i)] * field.table().second(node, c.level);
+      const Vec3<double>& n = field.load_mesh().nodes()[node].normal;
       const Vec3<double> n1 = perpendicular(n);
       radial += mean.col(0);
       couple += n1 * mean.col(1).transpose() + n.cross(n1) * mean.col(2).transpose();
@@ -82,7 +82,8 @@ struct MovedByLoads {
 [[nodiscard]] inline double torsional_stiffness(const ResponseField& field, const PlacedContact& c,
                                                 double activation) noexcept {
   const double a = c.tool.a,
-               Ha = 2 / a * field.table().edge(&MomentRow::droop, c.place.node, c.place.weight, a);
+               Ha = 2 / a *
+                    field.table().edge(&MomentRow::mean_sagitta, c.position.node, c.position.weight, a);
   return activation * 16 * a * a * a /
          (3 + 6.75 / std::numbers::pi * std::clamp(Ha, tick::min_curvature, tick::max_curvature));
 }
@@ -92,8 +93,8 @@ struct MovedByLoads {
                                                    const PlacedContact& c) noexcept {
   Vec3<double> u = Vec3<double>::Zero();
   for (std::size_t i = 0; i < 3; ++i)
-    u += c.regular * c.regular * c.place.weight[Eigen::Index(i)] *
-         field.table().second_by_twist(c.place.node[i], c.level);
+    u += c.regular * c.regular * c.position.weight[Eigen::Index(i)] *
+         field.table().second_by_twist(c.position.node[i], c.level);
   return u;
 }
 
@@ -124,7 +125,7 @@ struct MovedByLoads {
   out.C = c.C;
   out.S = c.S;
   if (wide > 0) {
-    out.moments.read(field, c.place, c.level, c.tool.m, c.tool.a, c.regular * c.regular,
+    out.moments.read(field, c.position, c.level, c.tool.m, c.tool.a, c.regular * c.regular,
                      bonded_dipole(c.tool.a, field.nu()), wide);
     out.C -= out.moments.take(out.C.trace());
     out.S = bounded_inverse(out.C, c.min_near());

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Where a response field can be touched: the solve mesh's surface, cut into triangles between places
-/// of loads. Made by load_places.hpp.
+/// @file Where a response field can be touched: the boundary element mesh's surface, cut into triangles
+/// between positions of loads. Made by load_positions.hpp.
 
 #include <palpate/config.hpp>
 #include <palpate/geometry/bvh.hpp>
@@ -12,41 +12,41 @@
 
 namespace palpate {
 
-/// A place among the nodes: weights >= 0 that sum to 1. Continuous in the point it was found from, near the
-/// surface.
-struct TouchPlace {
+/// A position among the nodes: weights >= 0 that sum to 1. Continuous in the point it was found from, near
+/// the surface.
+struct LoadPosition {
   std::uint32_t triangle = 0;
   std::array<std::uint32_t, 3> node{};
   Vec3<double> weight = Vec3<double>::UnitX();
-  double distance2 = 0;  ///< squared, from the point to the place [m^2]
+  double distance2 = 0;  ///< squared, from the point to the position [m^2]
 };
 
-/// A place where a load acts, on the surface of the solve mesh.
-struct TouchNode {
+/// A position where a load acts, on the surface of the boundary element mesh.
+struct LoadNode {
   Vec3<double> normal;                      ///< outward, unit
-  Vec3<double> source;                      ///< the place [m]
-  double size = 0;                          ///< mean length of the solve mesh's edges around [m]
+  Vec3<double> source;                      ///< the position [m]
+  double size = 0;                          ///< mean length of the boundary element mesh's edges around [m]
   double spacing = 0;                       ///< mean distance to the nodes around [m]
-  std::uint32_t triangle = 0;               ///< of the solve mesh, that holds the place
+  std::uint32_t triangle = 0;               ///< of the boundary element mesh, that holds the position
   Vec3<float> part = Vec3<float>::UnitX();  ///< weights of its corners
   bool crease = false;                      ///< on a crease, or drawn inwards from one
 };
 
-/// The whole surface of the solve mesh, fixed region included: closed, so that the place of a point of the
-/// surface never jumps, at a rim or across a thin part. Its nodes, in this order:
+/// The whole surface of the boundary element mesh, fixed region included: closed, so that the position of a
+/// point of the surface never jumps, at a rim or across a thin part. Its nodes, in this order:
 ///
 /// | nodes  | where                                                         | field of a load                                |
 /// |--------|---------------------------------------------------------------|------------------------------------------------|
-/// | solved | nodes of the solve mesh with a free triangle, middles of edges | boundary equation                             |
+/// | solved | nodes of the boundary element mesh with a free triangle, middles of edges | boundary equation                             |
 /// | held   | the other nodes                                               | none: w = -u_near                              |
-/// | edge   | vertices of the solve mesh where smooth parts meet            | mean of the loads of the nodes that meet there |
+/// | edge   | vertices of the boundary element mesh where smooth parts meet            | mean of the loads of the nodes that meet there |
 ///
-/// Only solved nodes have columns; the others' loads are shared among them (`shares`), and what is left falls
-/// on what is held and moves nothing. At most three parts of an edge node count.
+/// Only solved nodes have influence functions; the others' loads are shared among them (`shares`), and what
+/// is left falls on what is held and moves nothing. At most three parts of an edge node count.
 ///
 /// The loads of a crease's nodes lie inside their own parts; a contact that crosses a crease goes over
 /// gradually from one part's nodes to the edge's and on to the other part's.
-class TouchMesh {
+class LoadMesh {
  public:
   /// Part of a node's load.
   struct Share {
@@ -55,10 +55,10 @@ class TouchMesh {
   };
   static constexpr std::size_t most_parts = 3;
 
-  TouchMesh() = default;
+  LoadMesh() = default;
 
-  TouchMesh(std::vector<TouchNode> nodes, std::vector<std::array<std::uint32_t, 3>> triangles,
-            std::vector<std::uint32_t> share_begin, std::vector<Share> shares)
+  LoadMesh(std::vector<LoadNode> nodes, std::vector<std::array<std::uint32_t, 3>> triangles,
+           std::vector<std::uint32_t> share_begin, std::vector<Share> shares)
       : nodes_(std::move(nodes)),
         triangles_(std::move(triangles)),
         solved_(nodes_.size() + 1 - share_begin.size()),
@@ -77,34 +77,36 @@ class TouchMesh {
   /// By node that is not solved, the first of its shares, and one more; the shares.
   [[nodiscard]] const std::vector<std::uint32_t>& share_begin() const noexcept { return share_begin_; }
   [[nodiscard]] const std::vector<Share>& all_shares() const noexcept { return shares_; }
-  [[nodiscard]] const std::vector<TouchNode>& nodes() const noexcept { return nodes_; }
+  [[nodiscard]] const std::vector<LoadNode>& nodes() const noexcept { return nodes_; }
   [[nodiscard]] const std::vector<std::array<std::uint32_t, 3>>& triangles() const noexcept {
     return triangles_;
   }
 
-  /// The place x = sum weight (source + d normal) with d the distance along the interpolated normal; the
-  /// nearest place where there is none close by. The nearest place of a point over a reflex edge jumps, this
-  /// one does not. Where the search starts depends on x alone, so the answer has no memory.
-  [[nodiscard]] TouchPlace locate(const Vec3<double>& x) const noexcept {
+  /// The position x = sum weight (source + d normal) with d the distance along the interpolated normal; the
+  /// nearest position where there is none close by. The nearest position of a point over a reflex edge jumps,
+  /// this one does not. Where the search starts depends on x alone, so the answer has no memory.
+  [[nodiscard]] LoadPosition locate(const Vec3<double>& x) const noexcept {
     const auto at = bvh_->closest(x, start_[cell(x)]);
-    TouchPlace place{at.triangle, triangles_[at.triangle], at.weight, at.distance2};
-    if (at.distance2 > 0) follow_normals(x, at.position, place);
-    return place;
+    LoadPosition position{at.triangle, triangles_[at.triangle], at.weight, at.distance2};
+    if (at.distance2 > 0) follow_normals(x, at.position, position);
+    return position;
   }
 
  private:
   static constexpr int cells = 16;  // along each axis
 
-  // From the nearest place over the triangles' prisms, which share their sides. Leaves `place` alone if none
-  // holds x.
-  void follow_normals(const Vec3<double>& x, const Vec3<double>& nearest, TouchPlace& place) const noexcept {
-    std::uint32_t t = place.triangle;
+  // From the nearest position over the triangles' prisms, which share their sides. Leaves `position` alone if
+  // none holds x.
+  void follow_normals(const Vec3<double>& x, const Vec3<double>& nearest,
+                      LoadPosition& position) const noexcept {
+    std::uint32_t t = position.triangle;
     Vec3<double> n = Vec3<double>::Zero();
-    for (std::size_t c = 0; c < 3; ++c) n += place.weight[Eigen::Index(c)] * nodes_[place.node[c]].normal;
+    for (std::size_t c = 0; c < 3; ++c)
+      n += position.weight[Eigen::Index(c)] * nodes_[position.node[c]].normal;
     double d = (x - nearest).dot(n);
     for (int step = 0; step < 12; ++step) {
-      const TouchNode &p = nodes_[triangles_[t][0]], &q = nodes_[triangles_[t][1]],
-                      &r = nodes_[triangles_[t][2]];
+      const LoadNode &p = nodes_[triangles_[t][0]], &q = nodes_[triangles_[t][1]],
+                     &r = nodes_[triangles_[t][2]];
       const Vec3<double> dq = q.normal - p.normal, dr = r.normal - p.normal;
       Vec3<double> eq, er, to, area;
       const auto raise = [&] {
@@ -129,7 +131,7 @@ class TouchMesh {
       Eigen::Index least = 0;
       if (l.minCoeff(&least) > -1e-9) {
         l = l.cwiseMax(0.0);
-        place = {t, triangles_[t], l / l.sum(), place.distance2};
+        position = {t, triangles_[t], l / l.sum(), position.distance2};
         return;
       }
       t = across_[t][static_cast<std::size_t>(least)];
@@ -148,7 +150,7 @@ class TouchMesh {
     return at;
   }
 
-  std::vector<TouchNode> nodes_;
+  std::vector<LoadNode> nodes_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   std::size_t solved_ = 0;
   std::vector<std::uint32_t> share_begin_{0};

@@ -19,25 +19,25 @@ namespace palpate {
 
 /// Of a patch around a node, mu = 1.
 struct MomentRow {
-  float mean[5][3] = {};  ///< means of the loads' fields w [1/m^2]
-  float own[15] = {};     ///< their moments, lower triangle by row [1/m^3]
-  float sag = 0;          ///< how deep the patch's edge lies below its plane, at most [m]
-  float droop = 0;        ///< in the mean [m]
+  float mean[5][3] = {};   ///< means of the loads' fields w [1/m^2]
+  float own[15] = {};      ///< their moments, lower triangle by row [1/m^3]
+  float sagitta = 0;       ///< how deep the patch's edge lies below its plane, at most [m]
+  float mean_sagitta = 0;  ///< in the mean [m]
 };
 
 namespace detail {
 
-/// each(node, q) of the nodes that share a load around node k; none where they are one place.
+/// each(node, q) of the nodes that share a load around node k; none where they are one position.
 template <class Each>
-void each_moment(const TouchMesh& touch, std::size_t k, std::span<const TouchMesh::Share> shares,
+void each_moment(const LoadMesh& load_mesh, std::size_t k, std::span<const LoadMesh::Share> shares,
                  const Each& each) noexcept {
-  const TouchNode& node = touch.nodes()[k];
-  const auto offset = [&](const TouchMesh::Share& s) {
-    return tangential(Vec3<double>(touch.nodes()[s.node].source - node.source), node.normal);
+  const LoadNode& node = load_mesh.nodes()[k];
+  const auto offset = [&](const LoadMesh::Share& s) {
+    return tangential(Vec3<double>(load_mesh.nodes()[s.node].source - node.source), node.normal);
   };
   double sum = 0, square = 0;
   Vec3<double> first = Vec3<double>::Zero();
-  for (const TouchMesh::Share& s : shares) {
+  for (const LoadMesh::Share& s : shares) {
     const Vec3<double> p = offset(s);
     sum += double(s.weight);
     first += double(s.weight) * p;
@@ -47,7 +47,7 @@ void each_moment(const TouchMesh& touch, std::size_t k, std::span<const TouchMes
   if (!(square > setup::min_second_moment * node.spacing * node.spacing)) return;
   const Vec3<double> centre = first / sum;
   const double t = std::clamp(2 * sum - 1, 0.0, 1.0), unit = t * t * (3 - 2 * t) / square;
-  for (const TouchMesh::Share& s : shares)
+  for (const LoadMesh::Share& s : shares)
     each(s.node, Vec3<double>(double(s.weight) * unit * (offset(s) - centre)));
 }
 

@@ -11,11 +11,11 @@
 
 namespace palpate {
 
-/// Where the fields of unit loads at the nodes of a load mesh lie: x of every vertex of the boundary element mesh, y
-/// and z `stride` further each, mu = 1.
+/// Where the fields of unit loads at the nodes of a load mesh lie: x of every vertex of the boundary element
+/// mesh, y and z `stride` further each, mu = 1.
 struct InfluenceFunctions {
-  /// Loads per node: unit forces along x, y, z; unit radial double force; unit tilts along the node's two tangents;
-  /// unit twist about its inward normal.
+  /// Loads per node: unit forces along x, y, z; unit radial double force; unit tilts along the node's two
+  /// tangents; unit twist about its inward normal.
   static constexpr std::size_t loads = 7;
   const float* values = nullptr;
   std::size_t stride = 0;
@@ -35,15 +35,15 @@ struct NodeWeight {
 ///
 ///     w(x, s) = sum_ik l_i l_k W_ik(s),   second(x, s) = sum_k l_k Q_k(s)
 ///
-/// with the place x of weights l_i in a triangle of nodes, W_ik the mean over a patch at node i of the field
-/// of forces spread over a patch at node k, and Q_k the mean of the loads of second order at k itself. Linear
-/// in s^2 between the tabulated s_0 = 0, s_l^2 = 2^(l-1) (spacing / 2)^2 with the least spacing, to the
-/// body's size.
+/// with the position x of weights l_i in a triangle of nodes, W_ik the mean over a patch at node i of the
+/// field of forces spread over a patch at node k, and Q_k the mean of the loads of second order at k itself.
+/// Linear in s^2 between the tabulated s_0 = 0, s_l^2 = 2^(l-1) (spacing / 2)^2 with the least spacing, to
+/// the body's size.
 ///
 /// | symbol | name                                                              | unit |
 /// |--------|-------------------------------------------------------------------|------|
 /// | s      | radius over which the table averages: s^2 = a^2 - (spacing / 2)^2 | m    |
-/// | a      | radius of the patch; spacing: TouchNode's                         | m    |
+/// | a      | radius of the patch; spacing: LoadNode's                         | m    |
 class PatchTable {
  public:
   struct Own {
@@ -56,13 +56,13 @@ class PatchTable {
         [12];  ///< of the unit radial double force, the unit tilts along the node's two tangents, the unit twist [1/m^2]
   };
   using Moments = MomentRow;
-  using Share = TouchMesh::Share;
+  using Share = LoadMesh::Share;
 
   PatchTable() = default;
-  PatchTable(const TouchMesh& touch, std::vector<Own> own, std::vector<Second> second,
+  PatchTable(const LoadMesh& load_mesh, std::vector<Own> own, std::vector<Second> second,
              std::vector<Moments> moments, std::size_t levels, std::vector<std::uint32_t> spread_begin,
              std::vector<Share> spread)
-      : unit_(unit(touch)),
+      : unit_(unit(load_mesh)),
         levels_(levels),
         own_(std::move(own)),
         second_(std::move(second)),
@@ -70,9 +70,9 @@ class PatchTable {
         spread_begin_(std::move(spread_begin)),
         spread_(std::move(spread)) {}
 
-  /// `touch` and what a unit load at each of its nodes does: `column`.
-  PatchTable(const SolveMesh& mesh, const MidEdgeTable& bends, const TouchMesh& touch, unsigned threads,
-             const InfluenceFunctions& column);
+  /// `load_mesh` and what a unit load at each of its nodes does: `influence`.
+  PatchTable(const ElementMesh& mesh, const MidEdgeTable& bends, const LoadMesh& load_mesh, unsigned threads,
+             const InfluenceFunctions& influence);
 
   /// Where s^2 stands in the table.
   struct Level {
@@ -89,7 +89,7 @@ class PatchTable {
     }
     return at.below < levels_ - 1 ? at : Level{levels_ - 2, 1};
   }
-  /// w at a place of triangle t.
+  /// w at a position of triangle t.
   [[nodiscard]] Mat3<double> own(std::size_t t, const Vec3<double>& l, const Level& at) const noexcept {
     using Six = Eigen::Matrix<double, 6, 1>;
     const double g[6] = {l[0] * l[0], l[1] * l[1], l[2] * l[2], l[0] * l[1], l[1] * l[2], l[2] * l[0]};
@@ -121,7 +121,7 @@ class PatchTable {
     const std::size_t i = k * levels_ + level;
     return {spread_.data() + spread_begin_[i], spread_begin_[i + 1] - spread_begin_[i]};
   }
-  /// `sag` or `droop` of a patch of radius a.
+  /// `sagitta` or `mean_sagitta` of a patch of radius a.
   [[nodiscard]] double edge(float Moments::*depth, const std::array<std::uint32_t, 3>& node,
                             const Vec3<double>& l, double a) const noexcept {
     const Level at = level(a * a);
@@ -145,8 +145,8 @@ class PatchTable {
   }
 
  private:
-  void keep_solved(const TouchMesh& touch, const std::vector<detail::NodeWeight>& list);
-  [[nodiscard]] static double unit(const TouchMesh& touch);
+  void keep_solved(const LoadMesh& load_mesh, const std::vector<detail::NodeWeight>& list);
+  [[nodiscard]] static double unit(const LoadMesh& load_mesh);
   [[nodiscard]] double radius2(std::size_t level) const noexcept {
     return level == 0 ? 0 : std::ldexp(unit_, int(level) - 1);
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Rotation of a body's surface, half the curl of u, from u at the solve mesh's vertices. The table is
-/// made at set-up.
+/// @file Rotation of a body's surface, half the curl of u, from u at the boundary element mesh's vertices.
+/// The table is made at set-up.
 ///
 /// Without traction the normal derivative of u along the surface is minus the slope of its normal part, so u
 /// on the surface tells all of it: the slopes s_i = n . du/dt_i turn the normal n, the curl in the surface
@@ -28,7 +28,7 @@ class RotationTable {
 
   RotationTable() = default;
   /// `stride`: vertices, rounded up to whole lanes.
-  RotationTable(const SolveMesh& mesh, std::size_t stride);
+  RotationTable(const ElementMesh& mesh, std::size_t stride);
 
   /// Empty where a vertex is fixed or beyond the last.
   [[nodiscard]] std::span<const Weight> operator[](std::size_t v) const noexcept {
@@ -44,7 +44,7 @@ class RotationTable {
   }
 
  private:
-  void fit(const SolveMesh& mesh, std::uint32_t v, const std::vector<std::uint32_t>& ring,
+  void fit(const ElementMesh& mesh, std::uint32_t v, const std::vector<std::uint32_t>& ring,
            const std::array<Vec3<double>, 3>& axes);
 
   std::vector<std::uint32_t> begin_{0};

@@ -58,12 +58,12 @@ struct PatchWeight {
   std::uint32_t node;
   double weight;
 };
-constexpr std::size_t place_nodes = 3 * TouchMesh::most_parts;
+constexpr std::size_t place_nodes = 3 * LoadMesh::most_parts;
 
 /// Placed on the load mesh: C = C_near + w with its modes bounded from below.
 struct PlacedContact {
   Indenter tool;
-  TouchPlace place;
+  LoadPosition position;
   FixedVector<PatchWeight, place_nodes, Spare::undefined> nodes;
   double regular = 1;        ///< share of w that counts: 1 on the surface, 0 far from it
   double carried = 1;        ///< part of the force that does not fall on the fixed region

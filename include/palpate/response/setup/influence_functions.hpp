@@ -14,7 +14,7 @@
 #include <palpate/elasticity/flat_punch.hpp>
 #include <palpate/elasticity/point_load.hpp>
 #include <palpate/response/setup/boundary_element.hpp>
-#include <palpate/response/setup/load_places.hpp>
+#include <palpate/response/setup/load_positions.hpp>
 
 namespace palpate {
 
@@ -28,10 +28,10 @@ class NearSource {
   /// A triangle near a node, where t_near varies fast.
   struct Close {
     std::uint32_t triangle;
-    Vec3d apex;       ///< barycentric, its place nearest to the load
-    double distance;  ///< of that place [m]
+    Vec3d apex;       ///< barycentric, its position nearest to the load
+    double distance;  ///< of that position [m]
   };
-  [[nodiscard]] std::vector<Close> close(const TouchNode& s) const {
+  [[nodiscard]] std::vector<Close> close(const LoadNode& s) const {
     std::vector<Close> out;
     for (std::uint32_t t = 0; t < bem_.elements().size(); ++t) {
       const Element& e = bem_.elements()[t];
@@ -44,8 +44,8 @@ class NearSource {
   }
 
   /// Nodal values that stand for t_near of a node on all but the close triangles (3 nodes x 3).
-  void nodal(const TouchNode& s, const std::vector<Close>& close, Eigen::Ref<Matrix> out) const {
-    const SolveMesh& m = bem_.mesh();
+  void nodal(const LoadNode& s, const std::vector<Close>& close, Eigen::Ref<Matrix> out) const {
+    const ElementMesh& m = bem_.mesh();
     for (std::uint32_t j = 0; j < m.nodes.size(); ++j) {
       const Vec3d& x = m.vertices[m.nodes[j].vertex];
       if ((x - s.source).norm() < setup::singular_traction * s.size)  // not smooth there
@@ -57,9 +57,9 @@ class NearSource {
   }
 
   /// Adds -int U (t_near - nodal interpolant) over the triangles around a node.
-  void remainder(const TouchNode& s, const std::vector<Close>& close, const Eigen::Ref<const Matrix>& nodal,
+  void remainder(const LoadNode& s, const std::vector<Close>& close, const Eigen::Ref<const Matrix>& nodal,
                  Eigen::Ref<Matrix> out) const {
-    const SolveMesh& m = bem_.mesh();
+    const ElementMesh& m = bem_.mesh();
     struct Point {
       Vec3d x;
       Mat3<double> f;
@@ -114,14 +114,14 @@ class NearSource {
   }
 
  private:
-  [[nodiscard]] Mat3<double> traction(const TouchNode& s, const Vec3d& x, const Vec3d& normal) const {
+  [[nodiscard]] Mat3<double> traction(const LoadNode& s, const Vec3d& x, const Vec3d& normal) const {
     return point_load_traction(Vec3d(x - s.source), Vec3d(-s.normal), normal, nu_);
   }
 
   // Adds to t_near's own values what its bend b between the ends of each edge leaves out: int phi 4 phi_c
   // phi_d b dS, by the lumped mass of the triangles that are not close. (A consistent mass changes nothing.)
-  void raise_to_integrals(const TouchNode& s, const std::vector<Close>& close, Eigen::Ref<Matrix> out) const {
-    const SolveMesh& m = bem_.mesh();
+  void raise_to_integrals(const LoadNode& s, const std::vector<Close>& close, Eigen::Ref<Matrix> out) const {
+    const ElementMesh& m = bem_.mesh();
     Matrix missing = Matrix::Zero(out.rows(), 3);
     std::vector<double> mass(m.nodes.size(), 0);
     auto skip = close.begin();
@@ -161,7 +161,7 @@ class NearSource {
 namespace detail {
 /// u_near at vertex v of a unit force along axis l at a node, mu = 1 [1/m]. At the node's own vertex the mean
 /// over a disc of half the edge length.
-[[nodiscard]] inline Vec3d near_at_vertex(const SolveMesh& m, const TouchNode& node, std::uint32_t v, int l,
+[[nodiscard]] inline Vec3d near_at_vertex(const ElementMesh& m, const LoadNode& node, std::uint32_t v, int l,
                                           double nu) {
   const Vec3d r = m.vertices[v] - node.source, e = Vec3d::Unit(l);
   const bool own = r.norm() < setup::own_vertex * node.size;
@@ -173,14 +173,14 @@ namespace detail {
 
 /// w for unit forces at `nodes`, mu = 1: column 3 j + l is the field of direction l at node j; row 3 v + i is
 /// component i at vertex v [1/m]. `bem` must be factorised.
-[[nodiscard]] inline detail::Matrix solve_columns(const BoundaryElements& bem, double nu,
-                                                  std::span<const TouchNode> nodes) {
+[[nodiscard]] inline detail::Matrix solve_influence_functions(const BoundaryElements& bem, double nu,
+                                                              std::span<const LoadNode> nodes) {
   using detail::Matrix;
-  const SolveMesh& m = bem.mesh();
+  const ElementMesh& m = bem.mesh();
   const Eigen::Index n3 = 3 * Eigen::Index(m.vertices.size()), count = Eigen::Index(nodes.size());
   Matrix w(n3, 3 * count);
   const detail::NearSource source(bem, nu);
-  const auto hold = [&](Eigen::Ref<Matrix> out, Eigen::Index row, std::uint32_t v, const TouchNode& node) {
+  const auto hold = [&](Eigen::Ref<Matrix> out, Eigen::Index row, std::uint32_t v, const LoadNode& node) {
     for (int l = 0; l < 3; ++l) out.block<3, 1>(row, l) = detail::near_at_vertex(m, node, v, l, nu);
   };
   constexpr Eigen::Index block = detail::setup::loads_together;
@@ -191,7 +191,7 @@ namespace detail {
         held(3 * Eigen::Index(bem.fixed().size()), 3 * size);
     std::vector<std::vector<detail::NearSource::Close>> close;
     for (Eigen::Index j = 0; j < size; ++j) {
-      const TouchNode& s = nodes[std::size_t(first + j)];
+      const LoadNode& s = nodes[std::size_t(first + j)];
       close.push_back(source.close(s));
       source.nodal(s, close.back(), traction.middleCols<3>(3 * j));
       for (std::size_t f = 0; f < bem.fixed().size(); ++f)

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Where loads are put on a solve mesh, and the triangles between them: the touch mesh (touch_mesh.hpp)
-/// in the making. Set-up only.
+/// @file Where loads are put on a boundary element mesh, and the triangles between them: the load mesh
+/// (load_mesh.hpp) in the making. Set-up only.
 ///
 /// Loads are put at every node, and at the middle of every free edge that is longer than half its distance D
-/// to the next free crease: w changes with the load's place over D, and between places it is interpolated
-/// linearly. Without the middles a contact between two nodes next to a crease is three times as wrong as one
-/// at a node (docs/response_field.md).
+/// to the next free crease: w changes with the load's position over D, and between positions it is
+/// interpolated linearly. Without the middles a contact between two nodes next to a crease is three times as
+/// wrong as one at a node (docs/response_field.md).
 
 #include <palpate/response/setup/constants.hpp>
 #include <palpate/response/setup/make_element_mesh.hpp>
@@ -18,9 +18,9 @@
 
 namespace palpate::detail {
 
-/// The touch mesh of a solve mesh, which must outlive it, and what the fields of further loads at set-up are
-/// made of.
-class LoadPlaces {
+/// The load mesh of a boundary element mesh, which must outlive it, and what the fields of further loads at
+/// set-up are made of.
+class LoadPositions {
  public:
   /// A weighted node.
   struct Weight {
@@ -28,7 +28,7 @@ class LoadPlaces {
     Vec3d g;
   };
 
-  explicit LoadPlaces(const SolveMesh& m) : mesh_(m), edges_(mesh_edges(m.triangles, "LoadPlaces")) {
+  explicit LoadPositions(const ElementMesh& m) : mesh_(m), edges_(mesh_edges(m.triangles, "LoadPositions")) {
     std::vector<std::uint8_t> free(m.nodes.size(), 0);
     for (std::size_t t = 0; t < m.triangles.size(); ++t)
       if (!m.fixed_triangle[t])
@@ -41,9 +41,9 @@ class LoadPlaces {
       for (std::uint32_t k = 0; k < number_.size(); ++k) {
         if ((free[k] != 0) != solved) continue;
         number_[k] = static_cast<std::uint32_t>(nodes_.size());
-        const SolveMesh::Node& node = m.nodes[k];
+        const ElementMesh::Node& node = m.nodes[k];
         nodes_.push_back({node.normal, node.source, node.size, 0, 0, Vec3<float>::UnitX(), node.crease});
-        find_place(nodes_.back(), around_[node.vertex]);
+        find_position(nodes_.back(), around_[node.vertex]);
       }
     };
     add_nodes(true);
@@ -59,12 +59,12 @@ class LoadPlaces {
     add_edges();
   }
 
-  [[nodiscard]] TouchMesh touch_mesh() const { return {nodes_, triangles_, share_begin_, shares_}; }
+  [[nodiscard]] LoadMesh load_mesh() const { return {nodes_, triangles_, share_begin_, shares_}; }
   /// Number of solved and held nodes.
-  [[nodiscard]] std::size_t solved_or_held() const noexcept { return nodes_.size() - parts_.size(); }
+  [[nodiscard]] std::size_t solved_or_fixed() const noexcept { return nodes_.size() - parts_.size(); }
   /// Nodes that an edge's node is the mean of.
   [[nodiscard]] std::span<const std::uint32_t> parts(std::size_t k) const noexcept {
-    return parts_[k - solved_or_held()];
+    return parts_[k - solved_or_fixed()];
   }
   /// Weights g such that sum g h(node) is the gradient of h along the surface at node k, for any h. Not for
   /// edge nodes.
@@ -74,8 +74,8 @@ class LoadPlaces {
   using List = std::vector<std::uint32_t>;
   static constexpr std::uint32_t none = ~0u;
 
-  // The part of the solve mesh that holds a node's source.
-  void find_place(TouchNode& node, const List& triangles) const {
+  // The part of the boundary element mesh that holds a node's source.
+  void find_position(LoadNode& node, const List& triangles) const {
     double best = (std::numeric_limits<double>::max)();
     for (auto t : triangles) {
       const auto& c = mesh_.triangles[t];
@@ -121,19 +121,19 @@ class LoadPlaces {
       const Vec3d &a = mesh_.vertices[e.a()], &b = mesh_.vertices[e.b()], half = 0.5 * (a + b);
       if (!((b - a).norm() > setup::middle_ratio * distance(half))) continue;
       const auto end = ends(e, 0);
-      const SolveMesh::Node &p = mesh_.nodes[end[0]], &q = mesh_.nodes[end[1]];
+      const ElementMesh::Node &p = mesh_.nodes[end[0]], &q = mesh_.nodes[end[1]];
       const double shorter = (q.source - p.source).squaredNorm() / (b - a).squaredNorm();
       const Vec3d bulge = mesh_.middle[e.triangle[0]][e.corner[0]] - half;
-      TouchNode node{unit_or(Vec3d(p.normal + q.normal), p.normal),
-                     0.5 * (p.source + q.source) + shorter * bulge,
-                     0.5 * (p.size + q.size),
-                     0,
-                     0,
-                     Vec3<float>::UnitX(),
-                     false};
+      LoadNode node{unit_or(Vec3d(p.normal + q.normal), p.normal),
+                    0.5 * (p.source + q.source) + shorter * bulge,
+                    0.5 * (p.size + q.size),
+                    0,
+                    0,
+                    Vec3<float>::UnitX(),
+                    false};
       List near = around_[e.a()];
       near.insert(near.end(), around_[e.b()].begin(), around_[e.b()].end());
-      find_place(node, near);
+      find_position(node, near);
       for (std::size_t side = 0; side < 2; ++side)
         middle_[e.triangle[side]][e.corner[side]] = static_cast<std::uint32_t>(nodes_.size());
       nodes_.push_back(node);
@@ -143,7 +143,7 @@ class LoadPlaces {
   void add(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     if (a != b && b != c && c != a) triangles_.push_back({a, b, c});
   }
-  // A triangle of the solve mesh, cut at the middles of its edges.
+  // A triangle of the boundary element mesh, cut at the middles of its edges.
   void cut(std::uint32_t t) {
     std::array<std::uint32_t, 3> corner, middle = middle_[t];
     for (std::size_t c = 0; c < 3; ++c) corner[c] = number_[mesh_.nodes_of[t][c]];
@@ -200,7 +200,7 @@ class LoadPlaces {
     }
     gradient_.resize(nodes_.size());
     for (std::uint32_t k = 0; k < nodes_.size(); ++k) {
-      const TouchNode& node = nodes_[k];
+      const LoadNode& node = nodes_[k];
       const Vec3d t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
       struct Towards {
         double p, q, distance;  // part of the unit vector along t1, t2; distance [m]
@@ -250,7 +250,7 @@ class LoadPlaces {
 
   // A node where parts meet, and strips between it and the parts' loads along each side of every crease.
   void add_edges() {
-    const SolveMesh& m = mesh_;
+    const ElementMesh& m = mesh_;
     std::vector<List> parts(m.vertices.size());
     for (std::uint32_t k = 0; k < m.nodes.size(); ++k) parts[m.nodes[k].vertex].push_back(number_[k]);
     List edge(m.vertices.size());
@@ -260,20 +260,20 @@ class LoadPlaces {
         continue;
       }
       if (parts[v].empty()) continue;
-      TouchNode node{Vec3d::Zero(), m.vertices[v], 0, 0, 0, Vec3<float>::UnitX(), true};
+      LoadNode node{Vec3d::Zero(), m.vertices[v], 0, 0, 0, Vec3<float>::UnitX(), true};
       for (auto k : parts[v]) {
         node.normal += nodes_[k].normal;
         node.size += nodes_[k].size / double(parts[v].size());
         node.spacing += nodes_[k].spacing / double(parts[v].size());
       }
       node.normal = unit_or(node.normal, nodes_[parts[v][0]].normal);
-      find_place(node, around_[v]);
+      find_position(node, around_[v]);
       edge[v] = static_cast<std::uint32_t>(nodes_.size());
       nodes_.push_back(node);
-      parts[v].resize((std::min)(parts[v].size(), TouchMesh::most_parts));
+      parts[v].resize((std::min)(parts[v].size(), LoadMesh::most_parts));
       parts_.push_back(parts[v]);
     }
-    share_begin_.assign(solved_or_held() - solved_ + 1, 0);
+    share_begin_.assign(solved_or_fixed() - solved_ + 1, 0);
     for (const auto& p : parts_) {
       for (auto k : p)
         if (k < solved_) shares_.push_back({k, 1.f / static_cast<float>(p.size())});
@@ -291,19 +291,19 @@ class LoadPlaces {
     }
   }
 
-  const SolveMesh& mesh_;
+  const ElementMesh& mesh_;
   std::vector<MeshEdge> edges_;
   std::vector<List> around_;                          // triangles at each vertex
-  List number_;                                       // of the solve mesh's nodes
+  List number_;                                       // of the boundary element mesh's nodes
   std::vector<std::array<std::uint32_t, 3>> middle_;  // by triangle and edge from corner c to c + 1
-  std::vector<TouchNode> nodes_;
+  std::vector<LoadNode> nodes_;
   std::vector<std::array<std::uint32_t, 3>> triangles_;
-  List whole_;  // the solve mesh's, of each
+  List whole_;  // the boundary element mesh's, of each
   std::vector<std::vector<Weight>> gradient_;
   std::size_t solved_ = 0;
   std::vector<List> parts_;  // of the last nodes
   std::vector<std::uint32_t> share_begin_;
-  std::vector<TouchMesh::Share> shares_;
+  std::vector<LoadMesh::Share> shares_;
 };
 
 }  // namespace palpate::detail

@@ -29,12 +29,12 @@ struct VertexWeight {
   double weight;
 };
 
-/// For every edge of a solve mesh, weights with b = sum weight u(vertex); for every vertex, those of r. They
-/// sum to 0.
-class EdgeBend {
+/// For every edge of a boundary element mesh, weights with b = sum weight u(vertex); for every vertex, those
+/// of r. They sum to 0.
+class MidEdgeFit {
  public:
-  explicit EdgeBend(const SolveMesh& m) : of_(m.triangles.size()) {
-    const std::vector<MeshEdge> edges = mesh_edges(m.triangles, "EdgeBend");
+  explicit MidEdgeFit(const ElementMesh& m) : of_(m.triangles.size()) {
+    const std::vector<MeshEdge> edges = mesh_edges(m.triangles, "MidEdgeFit");
     const std::vector<Fit> fits = fit_nodes(m);
     weights_.resize(edges.size());
     for (std::uint32_t i = 0; i < edges.size(); ++i) {
@@ -89,7 +89,7 @@ class EdgeBend {
   };
 
   // Weighted least squares, 1/d^2, with penalties where the neighbours do not tell.
-  [[nodiscard]] static std::vector<Fit> fit_nodes(const SolveMesh& m) {
+  [[nodiscard]] static std::vector<Fit> fit_nodes(const ElementMesh& m) {
     std::vector<std::vector<std::uint32_t>> ring(m.nodes.size());
     for (const auto& t : m.nodes_of)
       for (std::size_t c = 0; c < 3; ++c) {
@@ -101,7 +101,7 @@ class EdgeBend {
       std::vector<std::uint32_t> near = ring[k];
       for (auto j : ring[k])
         for (auto l : ring[j]) add_once(near, l);
-      const SolveMesh::Node& node = m.nodes[k];
+      const ElementMesh::Node& node = m.nodes[k];
       const Vec3d &x = m.vertices[node.vertex], t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
       SpdSystem<5> A{};
       std::vector<Row> rows;
@@ -119,7 +119,7 @@ class EdgeBend {
       const double slopes = A.at(0, 0) + A.at(1, 1) + setup::no_weight;
       for (std::size_t r = 0; r < 5; ++r)
         A.at(r, r) += (r < 2 ? setup::slope_penalty : setup::curvature_penalty) * slopes;
-      if (!A.factor(5)) fail_at("EdgeBend", "neighbours must be finite", "node", k);
+      if (!A.factor(5)) fail_at("MidEdgeFit", "neighbours must be finite", "node", k);
       for (const Row& row : rows) {
         for (std::size_t r = 0; r < 5; ++r) A.b[r] = row.weight * row.by[r];
         A.substitute(5);
@@ -129,7 +129,7 @@ class EdgeBend {
     return fits;
   }
 
-  void find_raise(const SolveMesh& m, const std::vector<Fit>& fits) {
+  void find_raise(const ElementMesh& m, const std::vector<Fit>& fits) {
     // r times the vertex's mass = sum by . K over its nodes.
     std::vector<Vec3d> by(m.nodes.size(), Vec3d::Zero());
     std::vector<double> mass(m.vertices.size(), 0);
@@ -140,7 +140,7 @@ class EdgeBend {
       };
       const double area = 0.5 * edge(0).cross(edge(1)).norm();
       for (std::size_t c = 0; c < 3; ++c) {
-        const SolveMesh::Node& node = m.nodes[m.nodes_of[t][c]];
+        const ElementMesh::Node& node = m.nodes[m.nodes_of[t][c]];
         const Vec3d t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
         for (std::size_t k = 0; k < 3; ++k) {
           const double p = edge(k).dot(t1), q = edge(k).dot(t2),

@@ -10,15 +10,15 @@ using namespace palpate;
 using V = Vec3<double>;
 
 // Held where y <= 0.
-SolveMesh solve_mesh(const MeshData<double>& mesh, double vertices) {
+ElementMesh element_mesh(const MeshData<double>& mesh, double vertices) {
   std::vector<std::uint8_t> fixed;
   for (const auto& t : mesh.triangles)
     fixed.push_back((mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]).y() < 1e-9);
-  return make_solve_mesh(SmoothSurface(mesh), fixed, {.vertices = vertices});
+  return make_element_mesh(SmoothSurface(mesh), fixed, {.vertices = vertices});
 }
 // Mean edge length of the triangles whose centre is chosen.
 template <class Chosen>
-double mean_edge(const SolveMesh& m, const Chosen& chosen) {
+double mean_edge(const ElementMesh& m, const Chosen& chosen) {
   double sum = 0;
   int count = 0;
   for (const auto& t : m.triangles) {
@@ -35,10 +35,10 @@ double mean_edge(const SolveMesh& m, const Chosen& chosen) {
 TEST_CASE("unresolved area: none of a sphere, a plate's two faces until an edge is the thickness") {
   MeshData<double> sphere = test::ellipsoid_mesh(V(0.03, 0.03, 0.03), 8);
   for (auto& p : sphere.vertices) p.y() += 0.02;
-  CHECK(unresolved_area(solve_mesh(sphere, 100)) == 0.0);
+  CHECK(unresolved_area(element_mesh(sphere, 100)) == 0.0);
   // Plate 100 x 100 x 10 standing on a narrow face: its two faces are 20 of 23 parts of the free surface.
   const MeshData<double> plate = test::cells_mesh({10, 10, 1}, 0.01, [](int, int, int) { return true; });
-  const SolveMesh coarse = solve_mesh(plate, 100), fine = solve_mesh(plate, 1200);
+  const ElementMesh coarse = element_mesh(plate, 100), fine = element_mesh(plate, 1200);
   CHECK_ABSOLUTE(unresolved_area(coarse), 20.0 / 23, 0.02);  // a triangle more or less at the faces' borders
   CHECK(unresolved_area(fine) == 0.0);
 }
@@ -47,7 +47,7 @@ TEST_CASE("edges: short on a fin, along creases and at the rim; as many vertices
   // A block of 80 mm with a fin of 10 mm on its top.
   const MeshData<double> body =
       test::cells_mesh({8, 12, 8}, 0.01, [](int i, int j, int) { return j < 8 || i == 4; });
-  const SolveMesh m = solve_mesh(body, 300);
+  const ElementMesh m = element_mesh(body, 300);
   const double fin = mean_edge(m, [](const V& x) { return x.y() > 0.09 && x.y() < 0.11; }),
                face = mean_edge(
                    m,
