@@ -71,7 +71,7 @@ void try_body(const test::ResponseBody& body, double convergence) {
     V last[2], last_torque[2], F[2], T[2];
     Both before_contacts, before_drawn;
     for (int i = 0; i < steps; ++i) {
-      const V from[2] = {one.position, two.position}, turned[2] = {one.normal, two.normal};
+      const V from[2] = {one.place, two.place}, turned[2] = {one.normal, two.normal};
       one.step(0.005 * h);
       two.step(0.005 * h);
       const auto contact = [&](const test::Walker& w) {
@@ -88,7 +88,7 @@ void try_body(const test::ResponseBody& body, double convergence) {
       const double way = way_of(both[0]),
                    stiff = mu * way / flat_punch_compliance(a, body.nu).normal;  // half-space, at most
       const double moved =
-          ((one.position - from[0]).norm() + (two.position - from[1]).norm()) / (std::min)(h, a) +
+          ((one.place - from[0]).norm() + (two.place - from[1]).norm()) / (std::min)(h, a) +
           (one.normal - turned[0]).norm() + (two.normal - turned[1]).norm();
       double steep = 0;
       for (std::size_t c = 0; c < count; ++c) {

@@ -35,14 +35,14 @@ void check_reference(const ResponseField& field, const ResponseContact<double>& 
 }  // namespace
 
 TEST_CASE("nonlinear finite elements: ellipsoid_top and cube at 4 mm") {
-  // A small solve mesh keeps the test short: the bound is wider than the 4 % of the full one.
+  // A small boundary element mesh keeps the test short: the bound is wider than the 4 % of the full one.
   check_reference(
       test::ellipsoid_field(0.49, 260),
-      {.place = V(0, 0.04, 0), .normal = V::UnitY(), .radius = 0.005, .displacement = V(0, -0.004, 0)},
+      {.position = V(0, 0.04, 0), .normal = V::UnitY(), .radius = 0.005, .displacement = V(0, -0.004, 0)},
       test::truth_ellipsoid, test::truth_ellipsoid_force, 0.05);
   check_reference(
       test::block_field(V(0.1, 0.1, 0.1), 1e6, 0.49, 260),
-      {.place = V(0, 0.1, 0), .normal = V::UnitY(), .radius = 0.01, .displacement = V(0, -0.004, 0)},
+      {.position = V(0, 0.1, 0), .normal = V::UnitY(), .radius = 0.01, .displacement = V(0, -0.004, 0)},
       test::truth_cube, test::truth_cube_force, 0.06);
 }
 
@@ -70,7 +70,7 @@ TEST_CASE("nonlinear finite elements: a ball on a slab, which is stiffer than a 
   for (const auto& [depth, force] : test::truth_slab_ball_force) {
     const double felt =
         tick.solve(SphereContact<double>{
-                       .place = V(0, 0.03, 0), .normal = V::UnitY(), .radius = 0.015, .depth = depth})
+                       .position = V(0, 0.03, 0), .normal = V::UnitY(), .radius = 0.015, .depth = depth})
             .force;
     squares += std::pow(felt / force - 1, 2) / double(std::size(test::truth_slab_ball_force));
   }
@@ -84,10 +84,10 @@ TEST_CASE("nonlinear finite elements: a ball near an edge, which leans away and 
   double squares = 0;
   for (const auto& [depth, across, along] : test::truth_edge_ball_force) {
     const V force(across, along, 0),
-        felt =
-            tick.solve(SphereContact<double>{
-                           .place = V(0.028, 0.05, 0), .normal = V::UnitY(), .radius = 0.01, .depth = depth})
-                .on_body(V::UnitY());
+        felt = tick
+                   .solve(SphereContact<double>{
+                       .position = V(0.028, 0.05, 0), .normal = V::UnitY(), .radius = 0.01, .depth = depth})
+                   .on_body(V::UnitY());
     squares +=
         (felt - force).squaredNorm() / force.squaredNorm() / double(std::size(test::truth_edge_ball_force));
   }

@@ -9,21 +9,21 @@ using namespace palpate;
 using V = Vec3<double>;
 using Eigen::VectorXd;
 
-// Held below y = low; a small solve mesh.
-SolveMesh solve_mesh(const MeshData<double>& mesh, double low, double vertices) {
+// Held below y = low; a small boundary element mesh.
+ElementMesh element_mesh(const MeshData<double>& mesh, double low, double vertices) {
   std::vector<std::uint8_t> held;
   for (const auto& t : mesh.triangles)
     held.push_back((mesh.vertices[t[0]].y() + mesh.vertices[t[1]].y() + mesh.vertices[t[2]].y()) / 3 <= low);
-  return make_solve_mesh(SmoothSurface(mesh), held, {.vertices = vertices, .rim_ratio = 0.6});
+  return make_element_mesh(SmoothSurface(mesh), held, {.vertices = vertices, .rim_ratio = 0.6});
 }
 template <class F>
-VectorXd at_vertices(const SolveMesh& m, const F& f) {
+VectorXd at_vertices(const ElementMesh& m, const F& f) {
   VectorXd out(3 * Eigen::Index(m.vertices.size()));
   for (std::size_t v = 0; v < m.vertices.size(); ++v) out.segment<3>(3 * Eigen::Index(v)) = f(m.vertices[v]);
   return out;
 }
 template <class F>
-VectorXd at_nodes(const SolveMesh& m, const F& f) {
+VectorXd at_nodes(const ElementMesh& m, const F& f) {
   VectorXd out(3 * Eigen::Index(m.nodes.size()));
   for (std::size_t k = 0; k < m.nodes.size(); ++k) out.segment<3>(3 * Eigen::Index(k)) = f(m.nodes[k].normal);
   return out;
@@ -31,7 +31,7 @@ VectorXd at_nodes(const SolveMesh& m, const F& f) {
 }  // namespace
 
 TEST_CASE("box: rigid modes and uniform strain meet the discrete equation, nu = 0, 0.3, 0.49, 1/2") {
-  const SolveMesh m = solve_mesh(test::box_mesh(V(1, 1.2, 0.8), 5), 1e-9, 120);
+  const ElementMesh m = element_mesh(test::box_mesh(V(1, 1.2, 0.8), 5), 1e-9, 120);
   for (double nu : {0.0, 0.3, 0.49, 0.5}) {
     INFO("nu ", nu);
     const BoundaryElements bem(m, nu, 1);
@@ -55,7 +55,7 @@ TEST_CASE("box: rigid modes and uniform strain meet the discrete equation, nu = 
 }
 
 TEST_CASE("bar clamped at its end and pulled, nu = 0: the exact linear displacement") {
-  const SolveMesh m = solve_mesh(test::box_mesh(V(1, 3, 1), 6), 1e-9, 160);
+  const ElementMesh m = element_mesh(test::box_mesh(V(1, 3, 1), 6), 1e-9, 160);
   BoundaryElements bem(m, 0.0, 1);
   // mu = 1 and nu = 0: E = 2; traction 2 at the top stretches by 1.
   const VectorXd t = at_nodes(m, [](const V& n) { return V(0, n.y() > 0.5 ? 2 : 0, 0); });
@@ -75,7 +75,7 @@ TEST_CASE("sphere under uniform pressure: second order in the edge length") {
   const double nu = 0.3, pressure = 1, exact = -pressure * (1 - 2 * nu) / (2 * (1 + nu));
   double error[2], edge[2];
   for (int k = 0; k < 2; ++k) {
-    const SolveMesh m = solve_mesh(fine, -0.8, k == 0 ? 60 : 240);
+    const ElementMesh m = element_mesh(fine, -0.8, k == 0 ? 60 : 240);
     const BoundaryElements bem(m, nu, 1);
     detail::Matrix modes(3 * Eigen::Index(m.vertices.size()), 6);
     for (int i = 0; i < 3; ++i) {
@@ -104,9 +104,11 @@ TEST_CASE("set-up refuses an open mesh, an empty fixed region, nu out of range")
   open.triangles.pop_back();
   CHECK_THROWS_AS(SmoothSurface{open}, SetupError);
   const SmoothSurface closed(test::box_mesh(V(1, 1, 1), 2));
-  CHECK_THROWS_AS((void)make_solve_mesh(closed, std::vector<std::uint8_t>(closed.mesh().triangles.size(), 0)),
+  CHECK_THROWS_AS(
+      (void)make_element_mesh(closed, std::vector<std::uint8_t>(closed.mesh().triangles.size(), 0)),
+      SetupError);
+  CHECK_THROWS_AS(BoundaryElements(element_mesh(test::box_mesh(V(1, 1, 1), 4), 1e-9, 60), 0.51, 1),
                   SetupError);
-  CHECK_THROWS_AS(BoundaryElements(solve_mesh(test::box_mesh(V(1, 1, 1), 4), 1e-9, 60), 0.51, 1), SetupError);
 }
 
 TEST_CASE(
@@ -118,7 +120,7 @@ TEST_CASE(
   struct Errors {
     double bent, twisted;
   };
-  const auto errors = [&](const SolveMesh& m) {
+  const auto errors = [&](const ElementMesh& m) {
     BoundaryElements bem(m, 0.0, 1);
     detail::Matrix u(3 * Eigen::Index(m.vertices.size()), 2);
     VectorXd bend = VectorXd::Zero(3 * Eigen::Index(m.nodes.size())), twist = bend;
@@ -154,7 +156,7 @@ TEST_CASE(
     const Eigen::Vector2d angle = A.inverse() * b;
     return Errors{deflection / count / tip - 1, angle[1] / ((1.0 / 6) / (0.140577 * mu)) - 1};
   };
-  const Errors remeshed = errors(solve_mesh(test::box_mesh(V(1, length, 1), 8), 1e-9, 320));
+  const Errors remeshed = errors(element_mesh(test::box_mesh(V(1, length, 1), 8), 1e-9, 320));
   MESSAGE("remeshed: bent ", remeshed.bent, ", twisted ", remeshed.twisted);
   CHECK(std::abs(remeshed.bent) < 0.02);  // linear u: 0.1
   CHECK(std::abs(remeshed.twisted) < 0.05);
@@ -169,7 +171,7 @@ TEST_CASE(
       held.push_back(bar.mesh().vertices[t[0]].y() + bar.mesh().vertices[t[1]].y() +
                          bar.mesh().vertices[t[2]].y() <
                      1e-9);
-    twisted[k] = errors(detail::finish_solve_mesh(bar, detail::Remesher(bar, held, {}))).twisted;
+    twisted[k] = errors(detail::finish_element_mesh(bar, detail::Remesher(bar, held, {}))).twisted;
   }
   const double order[] = {std::log(twisted[0] / twisted[1]) / std::log(3.0 / 2),
                           std::log(twisted[1] / twisted[2]) / std::log(4.0 / 3)};

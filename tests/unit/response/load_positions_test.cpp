@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <palpate/response/response_contact.hpp>
-#include <palpate/response/setup/load_places.hpp>
+#include <palpate/response/setup/load_positions.hpp>
 
 #include "support/check.hpp"
 #include "support/response_meshes.hpp"
@@ -10,14 +10,14 @@
 namespace {
 using namespace palpate;
 using V = Vec3<double>;
-using detail::LoadPlaces;
+using detail::LoadPositions;
 
-SolveMesh solve_mesh(const MeshData<double>& body, double base, double vertices) {
+ElementMesh element_mesh(const MeshData<double>& body, double base, double vertices) {
   std::vector<std::uint8_t> held;
   const auto& v = body.vertices;
   for (const auto& t : body.triangles)
     held.push_back((std::max)({v[t[0]].y(), v[t[1]].y(), v[t[2]].y()}) < base);
-  return make_solve_mesh(SmoothSurface(body), held, {.vertices = vertices});
+  return make_element_mesh(SmoothSurface(body), held, {.vertices = vertices});
 }
 MeshData<double> cube_mesh() { return test::box_mesh(V(0.1, 0.1, 0.1), 8); }
 
@@ -31,7 +31,7 @@ struct Cube {
         tick(field, {.second_order = false}) {}
   std::pair<std::vector<double>, double> press(const V& x) {
     const ResponseContact<double> contact{
-        .place = x, .normal = V::UnitY(), .radius = 0.008, .displacement = V(0, -0.001, 0)};
+        .position = x, .normal = V::UnitY(), .radius = 0.008, .displacement = V(0, -0.001, 0)};
     V force = V::Zero();
     tick.solve(&contact, 1, &force);
     std::vector<double> u(3 * display.size());
@@ -45,8 +45,8 @@ struct Cube {
 }  // namespace
 
 TEST_CASE("load mesh: closed, unfolded; only edges within half their distance to a crease are whole") {
-  const SolveMesh solve = solve_mesh(cube_mesh(), 1e-6, 150);
-  const TouchMesh touch = LoadPlaces(solve).touch_mesh();
+  const ElementMesh solve = element_mesh(cube_mesh(), 1e-6, 150);
+  const LoadMesh touch = LoadPositions(solve).load_mesh();
   const auto node = [&](std::uint32_t k) { return touch.nodes()[k]; };
   std::map<std::array<std::uint32_t, 2>, int> sides;
   for (const auto& t : touch.triangles()) {
@@ -60,7 +60,7 @@ TEST_CASE("load mesh: closed, unfolded; only edges within half their distance to
     CHECK(sides.contains({side[1], side[0]}));
   }
   int middles = 0;
-  for (const TouchNode& k : touch.nodes()) {
+  for (const LoadNode& k : touch.nodes()) {
     const auto& corner = solve.triangles[k.triangle];
     V x = V::Zero();
     for (std::size_t c = 0; c < 3; ++c) x += double(k.part[Eigen::Index(c)]) * solve.vertices[corner[c]];
@@ -70,7 +70,7 @@ TEST_CASE("load mesh: closed, unfolded; only edges within half their distance to
   CHECK(middles > 50);
   int uncut = 0;
   for (const auto& [side, count] : sides) {
-    const TouchNode a = node(side[0]), b = node(side[1]);
+    const LoadNode a = node(side[0]), b = node(side[1]);
     if (a.normal.y() < 0.99 || b.normal.y() < 0.99 || a.crease || b.crease)
       continue;  // on the top face, within
     if (a.part.maxCoeff() < 1 || b.part.maxCoeff() < 1) continue;
@@ -83,18 +83,18 @@ TEST_CASE("load mesh: closed, unfolded; only edges within half their distance to
 }
 
 TEST_CASE("load mesh: where no free crease is, loads are put at the nodes alone") {
-  const SolveMesh solve = solve_mesh(test::ellipsoid_mesh(V(0.05, 0.04, 0.03), 10), -0.025, 150);
-  const TouchMesh touch = LoadPlaces(solve).touch_mesh();
+  const ElementMesh solve = element_mesh(test::ellipsoid_mesh(V(0.05, 0.04, 0.03), 10), -0.025, 150);
+  const LoadMesh touch = LoadPositions(solve).load_mesh();
   for (std::size_t k = 0; k < touch.solved(); ++k)
     CHECK((touch.nodes()[k].crease || touch.nodes()[k].part.maxCoeff() == 1.f));
 }
 
 TEST_CASE("gradients along the surface: of a linear function exactly, at every node of a flat face") {
-  const SolveMesh solve = solve_mesh(cube_mesh(), 1e-6, 150);
-  const LoadPlaces places(solve);
-  const TouchMesh touch = places.touch_mesh();
+  const ElementMesh solve = element_mesh(cube_mesh(), 1e-6, 150);
+  const LoadPositions places(solve);
+  const LoadMesh touch = places.load_mesh();
   const V slope(1, 2, -3);
-  for (std::size_t k = 0; k < places.solved_or_held(); ++k) {
+  for (std::size_t k = 0; k < places.solved_or_fixed(); ++k) {
     V gradient = V::Zero();
     for (const auto& w : places.gradient(k)) gradient += slope.dot(touch.nodes()[w.node].source) * w.g;
     const V along = tangential(slope, touch.nodes()[k].normal);

@@ -5,7 +5,7 @@
 /// in the mean. Made at set-up.
 
 #include <palpate/core/detail/simd_shuffle.hpp>
-#include <palpate/response/tick/edge_bend.hpp>
+#include <palpate/response/setup/mid_edge_fit.hpp>
 
 #include <span>
 
@@ -14,7 +14,7 @@ namespace palpate {
 /// Corrections of a linear field, from the boundary element mesh alone: by edge, weights with b = sum weight
 /// u(vertex), how far u at the edge's middle lies from the mean of its ends (none where both ends are fixed);
 /// by vertex, weights with r = sum weight u(vertex), by which a linear field is raised there so that it is
-/// right in the mean (none where the vertex is fixed). Derivation: edge_bend.hpp.
+/// right in the mean (none where the vertex is fixed). Derivation: mid_edge_fit.hpp.
 class MidEdgeTable {
  public:
   struct Weight {
@@ -40,7 +40,7 @@ class MidEdgeTable {
   using Edges = std::array<std::uint32_t, 3>;  ///< from corner c to c + 1
 
   MidEdgeTable() = default;
-  MidEdgeTable(const SolveMesh& mesh, const detail::EdgeBend& fit) {
+  MidEdgeTable(const ElementMesh& mesh, const detail::MidEdgeFit& fit) {
     of_triangle_.resize(mesh.triangles.size());
     std::vector<std::uint8_t> rests(fit.size());
     for (std::size_t t = 0; t < of_triangle_.size(); ++t)
@@ -55,7 +55,7 @@ class MidEdgeTable {
     find_middles(mesh);
   }
   /// From saved parts (save.hpp).
-  MidEdgeTable(const SolveMesh& mesh, std::vector<Edges> of_triangle, Rows edge_rows, Rows vertex_rows)
+  MidEdgeTable(const ElementMesh& mesh, std::vector<Edges> of_triangle, Rows edge_rows, Rows vertex_rows)
       : of_triangle_(std::move(of_triangle)),
         edge_rows_(std::move(edge_rows)),
         vertex_rows_(std::move(vertex_rows)) {
@@ -77,7 +77,7 @@ class MidEdgeTable {
   }
 
  private:
-  void find_middles(const SolveMesh& mesh) {
+  void find_middles(const ElementMesh& mesh) {
     ends_.resize(edge_rows_.size());
     for (std::size_t t = 0; t < of_triangle_.size(); ++t)
       for (std::size_t c = 0; c < 3; ++c)

@@ -45,9 +45,9 @@ struct PatchMoments {
     return smooth_step((a / size - tick::narrow_patch) / (tick::wide_patch - tick::narrow_patch));
   }
 
-  /// Reads G and W of a patch of radius a at a place of the load mesh. `counts`: factor of w; `dipole`: that
+  /// Reads G and W of a patch of radius a at a position of the load mesh. `counts`: factor of w; `dipole`: that
   /// of a unit normal force (bonded_dipole); `part`: share that the moments have.
-  void read(const ResponseField& field, const TouchPlace& place, const PatchTable::Level& level,
+  void read(const ResponseField& field, const LoadPosition& position, const PatchTable::Level& level,
             const Vec3<double>& inward, double a, double counts, double dipole, double part) noexcept {
     share = part;
     m = inward;
@@ -55,7 +55,7 @@ struct PatchMoments {
     t2 = t1.cross(m);
     G.setZero();
     W.setZero();
-    for (std::size_t i = 0; i < 3; ++i) add_node(field, place, level, i, counts);
+    for (std::size_t i = 0; i < 3; ++i) add_node(field, position, level, i, counts);
     // For nu < 1/2 a force has a dipole and a couple of its own.
     for (int r = 0; r < 5; ++r)
       for (int j = 0; j < 3; ++j)
@@ -103,18 +103,18 @@ struct PatchMoments {
   [[nodiscard]] Vec3<double> couple(const Moments& y) const noexcept { return y[3] * t1 + y[4] * t2; }
 
  private:
-  // Adds the moments of node i of the place, rotated from the node's axes into the patch's by the least
+  // Adds the moments of node i of the position, rotated from the node's axes into the patch's by the least
   // rotation of one plane into the other; between opposite normals, where there is none, nothing is left.
-  void add_node(const ResponseField& field, const TouchPlace& place, const PatchTable::Level& level,
+  void add_node(const ResponseField& field, const LoadPosition& position, const PatchTable::Level& level,
                 std::size_t i, double counts) noexcept {
-    const std::size_t k = place.node[i];
-    const Vec3<double>& n = field.touch().nodes()[k].normal;
+    const std::size_t k = position.node[i];
+    const Vec3<double>& n = field.load_mesh().nodes()[k].normal;
     const Vec3<double> k1 = perpendicular(n), k2 = n.cross(k1);
     const double c = 0.5 * (t1.dot(k1) + t2.dot(k2)), s = 0.5 * (t1.dot(k2) - t2.dot(k1));
     MomentsByForce mean = MomentsByForce::Zero();
     MomentMatrix own = MomentMatrix::Zero();
     for (std::size_t l = 0; l < 2; ++l) {
-      const double part = counts * place.weight[Eigen::Index(i)] * (l == 0 ? 1 - level.part : level.part);
+      const double part = counts * position.weight[Eigen::Index(i)] * (l == 0 ? 1 - level.part : level.part);
       const PatchTable::Moments& row = field.table().moments(k, level.below + l);
       for (int r = 0, e = 0; r < 5; ++r) {
         for (int j = 0; j < 3; ++j) mean(r, j) += part * double(row.mean[r][j]);

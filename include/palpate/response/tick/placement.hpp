@@ -16,18 +16,18 @@
 
 namespace palpate::detail {
 
-/// Mean of a length of the nodes (size or spacing) around a place, interpolated [m].
-[[nodiscard]] inline double mean_of(double TouchNode::*length, const ResponseField& field,
-                                    const TouchPlace& place) noexcept {
+/// Mean of a length of the nodes (size or spacing) around a position, interpolated [m].
+[[nodiscard]] inline double mean_of(double LoadNode::*length, const ResponseField& field,
+                                    const LoadPosition& position) noexcept {
   double mean = 0;
   for (std::size_t i = 0; i < 3; ++i)
-    mean += place.weight[Eigen::Index(i)] * field.touch().nodes()[place.node[i]].*length;
+    mean += position.weight[Eigen::Index(i)] * field.load_mesh().nodes()[position.node[i]].*length;
   return mean;
 }
 
-/// Solved nodes of a place: its own, and for each node that is not solved those that share its load.
+/// Solved nodes of a position: its own, and for each node that is not solved those that share its load.
 template <class List>
-void add_place(const TouchMesh& touch, const TouchPlace& place, List& list) noexcept {
+void add_position(const LoadMesh& touch, const LoadPosition& position, List& list) noexcept {
   const auto add = [&list](std::uint32_t node, double weight) {
     const auto same =
         std::find_if(list.begin(), list.end(), [node](const PatchWeight& w) { return w.node == node; });
@@ -37,11 +37,11 @@ void add_place(const TouchMesh& touch, const TouchPlace& place, List& list) noex
       list.push_back({node, weight});
   };
   for (std::size_t i = 0; i < 3; ++i) {
-    const double weight = place.weight[Eigen::Index(i)];
-    if (place.node[i] < touch.solved())
-      add(place.node[i], weight);
+    const double weight = position.weight[Eigen::Index(i)];
+    if (position.node[i] < touch.solved())
+      add(position.node[i], weight);
     else
-      for (const TouchMesh::Share& s : touch.shares(place.node[i])) add(s.node, weight * double(s.weight));
+      for (const LoadMesh::Share& s : touch.shares(position.node[i])) add(s.node, weight * double(s.weight));
   }
 }
 
@@ -57,19 +57,19 @@ void add_place(const TouchMesh& touch, const TouchPlace& place, List& list) noex
   PlacedContact c;
   c.tool = tool;
   c.displacement2 = tool.displacement2();
-  c.place = field.touch().locate(tool.x);
-  add_place(field.touch(), c.place, c.nodes);
-  const double size = mean_of(&TouchNode::size, field, c.place),
-               spacing = mean_of(&TouchNode::spacing, field, c.place);
+  c.position = field.load_mesh().locate(tool.x);
+  add_position(field.load_mesh(), c.position, c.nodes);
+  const double size = mean_of(&LoadNode::size, field, c.position),
+               spacing = mean_of(&LoadNode::spacing, field, c.position);
   c.level = field.table().level(tool.seen2() - 0.25 * spacing * spacing);
-  c.sagitta = field.table().edge(&MomentRow::sag, c.place.node, c.place.weight, tool.a);
-  // Far from the surface the nearest place may jump; there w has faded: to a half at the distance of an edge.
-  const double far2 = c.place.distance2 / (size * size);
+  c.sagitta = field.table().edge(&MomentRow::sagitta, c.position.node, c.position.weight, tool.a);
+  // Far from the surface the nearest position may jump; there w has faded: to a half at the distance of an edge.
+  const double far2 = c.position.distance2 / (size * size);
   c.regular = 1 / (1 + far2 * far2);
   double sum = 0;
   for (const PatchWeight& w : c.nodes) sum += w.weight;
   c.carried = 1 - c.regular * (std::max)(1 - sum, 0.0);
-  c.w = c.regular * c.regular * field.table().own(c.place.triangle, c.place.weight, c.level);
+  c.w = c.regular * c.regular * field.table().own(c.position.triangle, c.position.weight, c.level);
   c.near = flat_punch_compliance(tool.a, field.nu());
   c.C = c.w + (c.near.normal - c.near.tangential) * (tool.m * tool.m.transpose());
   c.C.diagonal().array() += c.near.tangential;
@@ -81,31 +81,31 @@ void add_place(const TouchMesh& touch, const TouchPlace& place, List& list) noex
 }
 
 /// each(part, node, level) for the spreads (PatchTable) that together are the load of a contact whose flat
-/// punch has the radius sqrt(loaded2). Interpolated twice, over the place's triangle and over those that the
+/// punch has the radius sqrt(loaded2). Interpolated twice, over the position's triangle and over those that the
 /// spreads lie on: a quarter of spacing^2 each time.
 template <class Each>
 void each_spread(const ResponseField& field, const PlacedContact& c, double loaded2,
                  const Each& each) noexcept {
-  const double spacing = mean_of(&TouchNode::spacing, field, c.place);
+  const double spacing = mean_of(&LoadNode::spacing, field, c.position);
   const PatchTable::Level level = field.table().level(loaded2 - 0.5 * spacing * spacing);
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t l = 0; l < 2; ++l)
-      each(c.regular * c.place.weight[Eigen::Index(i)] * (l == 0 ? 1 - level.part : level.part),
-           c.place.node[i], level.below + l);
+      each(c.regular * c.position.weight[Eigen::Index(i)] * (l == 0 ? 1 - level.part : level.part),
+           c.position.node[i], level.below + l);
 }
 
-/// Solved nodes that share the force: the spreads of the place's nodes, added up in `weight`, one number per
+/// Solved nodes that share the force: the spreads of the position's nodes, added up in `weight`, one number per
 /// solved node, all 0 before; `nodes` lists those with a weight. Returns the part of the force that they
 /// carry.
 ///
-/// Continuous. Points of the patch's plane laid onto the surface are not: off it, their nearest places jump
+/// Continuous. Points of the patch's plane laid onto the surface are not: off it, their nearest positions jump
 /// from sheet to sheet.
 [[nodiscard]] inline double spread_force(const ResponseField& field, const PlacedContact& c, double loaded2,
                                          float* weight, std::vector<std::uint32_t>& nodes) noexcept {
   nodes.clear();
   double sum = 0;
   each_spread(field, c, loaded2, [&](double part, std::uint32_t k, std::size_t level) {
-    for (const TouchMesh::Share& s : field.table().spread(k, level)) {
+    for (const LoadMesh::Share& s : field.table().spread(k, level)) {
       const double w = part * double(s.weight);
       if (!(w > tick::min_node_weight)) continue;
       if (weight[s.node] == 0) nodes.push_back(s.node);
@@ -121,7 +121,7 @@ void each_spread(const ResponseField& field, const PlacedContact& c, double load
 inline void spread_moments(const ResponseField& field, const PlacedContact& c, double loaded2,
                            const float* weight, float* q) noexcept {
   each_spread(field, c, loaded2, [&](double part, std::uint32_t k, std::size_t level) {
-    each_moment(field.touch(), k, field.table().spread(k, level),
+    each_moment(field.load_mesh(), k, field.table().spread(k, level),
                 [&](std::uint32_t node, const Vec3<double>& own) {
                   if (weight[node] == 0) return;
                   const Vec3<double> moment = part * own;
