@@ -14,9 +14,10 @@
 ///
 /// PALPATE_ON_SETUP_ERROR must not return.
 ///
-/// Header-only is the default. What only set-up needs and costs much to compile is defined in files `setup/*_impl.hpp`,
-/// which the headers include at their end. With PALPATE_COMPILED they do not: src/palpate.cpp holds those functions,
-/// once, and the program links it. The CMake target palpate::compiled defines the macro and links the library.
+/// Header-only is the default. What only set-up needs and costs much to compile is defined in files
+/// `setup/*_impl.hpp`, which the headers include at their end. With PALPATE_COMPILED they do not:
+/// src/palpate.cpp holds those functions, once, and the program links it. The CMake target palpate::compiled
+/// defines the macro and links the library.
 
 #if __has_include(<palpate_config.hpp>)
 #include <palpate_config.hpp>

@@ -3,9 +3,9 @@
 
 /// @file Surface displacement, force and torque of case tilt_pressed_edge (bench/truth/make_reference.cpp,
 /// edges of an eighth of the patch's radius): a block of 80 x 50 x 60 mm, x and z from the middle, fixed at
-/// its base y = 0, neo-Hookean, E = 1 MPa, nu = 0.49; a bonded flat punch of 6 mm on its top, 12 mm from an edge, is
-/// pressed 4 mm and tilted 0.16 rad. A hundred free vertices, drawn by area. Own error: force and torque 3 to
-/// 6 % too high (accuracy.md).
+/// its base y = 0, neo-Hookean, E = 1 MPa, nu = 0.49; a bonded flat punch of 6 mm on its top, 12 mm from an
+/// edge, is pressed 4 mm and tilted 0.16 rad. A hundred free vertices, drawn by area. Own error: force and
+/// torque 3 to 6 % too high (accuracy.md).
 
 namespace palpate::test {
 

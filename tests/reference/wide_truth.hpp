@@ -3,8 +3,8 @@
 
 /// @file Surface displacement by geometrically nonlinear finite elements (neo-Hookean, E = 1 MPa, nu = 0.49)
 /// at 120 free vertices of a block of 80 x 50 x 60 mm, x and z from the middle, fixed at its base y = 0; a
-/// bonded flat punch of 20 mm on its top, 10 mm off the middle, is pressed 6 mm. Taylor-Hood tetrahedra. Own error
-/// against twice as many nodes: displacement 0.5 %, force 0.7 % too high.
+/// bonded flat punch of 20 mm on its top, 10 mm off the middle, is pressed 6 mm. Taylor-Hood tetrahedra. Own
+/// error against twice as many nodes: displacement 0.5 %, force 0.7 % too high.
 
 namespace palpate::test {
 

@@ -73,8 +73,8 @@ const Box<S> box({.half = {0.02, 0.02, 0.02}});
 
 }  // namespace
 
-// d mu / d P <= 1/fade = 10, and weights turn over 2 to 4 times faster than the position in units of the body;
-// corners and contact may each be as large as the unit of displacement.
+// d mu / d P <= 1/fade = 10, and weights turn over 2 to 4 times faster than the position in units of the
+// body; corners and contact may each be as large as the unit of displacement.
 TEST_CASE("linear field under 10,000 wandering contacts: ellipsoid") {
   check_paths<LinearInterpolation<S>>(ellipsoid, 40);
 }

@@ -3,16 +3,16 @@
 
 /// @file Curvature extremal points: where the skeleton's beams end (V.A).
 ///
-/// | surface          | points                                | why these                                    |
-/// |------------------|---------------------------------------|----------------------------------------------|
-/// | `Box`            | 8 vertices                            | curvature is infinite there                  |
-/// | `Ellipsoid`      | 6 ends of the axes                    | the extrema of both principal curvatures     |
-/// | same, axes equal | the same 6                            | curvature is constant along curves: a choice |
-/// | `Sphere`         | 6 ends of the coordinate axes         | that does not jump as axes become equal      |
-/// | `Cylinder`       | 8: on each rim the ends of x and z    | the rims are extremal all along              |
-/// | `Superellipsoid` | 14: ends of the axes, and the points  | flattest and sharpest points for every       |
-/// |                  | towards its box's vertices            | pair of exponents                            |
-/// | `MeshSurface`    | estimated: mesh_extremal_points.hpp   | any mesh                                     |
+/// | surface          | points                                | why these                                  |
+/// |------------------|---------------------------------------|--------------------------------------------|
+/// | `Box`            | 8 vertices                            | curvature is infinite there                |
+/// | `Ellipsoid`      | 6 ends of the axes                    | the extrema of both principal curvatures   |
+/// | same, axes equal | the same 6                            | a choice: curvature is constant on curves   |
+/// | `Sphere`         | 6 ends of the coordinate axes         | that does not jump as axes become equal    |
+/// | `Cylinder`       | 8: on each rim the ends of x and z    | the rims are extremal all along            |
+/// | `Superellipsoid` | 14: ends of the axes, and the points  | flattest and sharpest points for every     |
+/// |                  | towards its box's vertices            | pair of exponents                          |
+/// | `MeshSurface`    | estimated: mesh_extremal_points.hpp   | any mesh                                   |
 ///
 /// Each choice has every mirror symmetry of its body. Points are in object coordinates [m], set-up only.
 ///

@@ -15,17 +15,18 @@
 
 namespace palpate {
 
-/// Contacts to vertices: each contact is a stuck patch with the area of its region that moves by D
+/// Contacts to vertices: each contact is a bonded patch with the area of its region that moves by D
 /// (response_contact.hpp); the contacts' fields are coupled. Accuracy: docs/accuracy.md.
 ///
-/// | symbol | name                  | unit | range                                                                 |
-/// |--------|-----------------------|------|-----------------------------------------------------------------------|
-/// | a      | radius of the patch   | m    | sqrt(area / pi), at least `least_radius` and |D| / 2                  |
-/// |        | `Params::least_radius` | m   | > 0, or 0 for a quarter of the boundary element mesh's edge length               |
+/// | symbol | name                   | unit | range                                                        |
+/// |--------|------------------------|------|--------------------------------------------------------------|
+/// | a      | radius of the patch    | m    | sqrt(area / pi), at least `least_radius` and |D| / 2         |
+/// |        | `Params::least_radius` | m    | > 0, or 0 for a quarter of the element mesh's edge length    |
 ///
-/// |D| / 2 is where second order in depth ends, and keeps a point contact from drawing a needle. `Contacts`: most drawn at
-/// once; more are left out, region_overflow. A contact that is not finite is left out, invalid_pose. With the
-/// same contacts as in the last write nothing is read or written. All vertices move: `Moved` counts them all.
+/// |D| / 2 is where second order in depth ends, and keeps a point contact from drawing a needle. `Contacts`: how
+/// many are drawn at once; more are left out, region_overflow. A contact that is not finite is left out,
+/// invalid_pose. With the same contacts as in the last write nothing is read or written. All vertices move:
+/// `Moved` counts them all.
 ///
 /// Set-up reports a least radius < 0, and a mesh that is not finite or, with normals, not closed.
 template <Real S, std::size_t Contacts = 4>

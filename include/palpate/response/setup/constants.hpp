@@ -3,22 +3,25 @@
 
 /// @file Chosen constants of the response field's set-up: value, unit, reason, range. Set-up only.
 ///
-/// None of them is a property of the material. Most bound an error that the references of docs/accuracy.md then showed
-/// to be small; where a value was fitted, its cases are named. Lengths are in edge lengths of the mesh unless stated.
+/// None of them is a property of the material. Most bound an error that the references of docs/accuracy.md
+/// then showed to be small; where a value was fitted, its cases are named. Lengths are in edge lengths of the
+/// mesh unless stated.
 
 namespace palpate::detail::setup {
 
 // Smooth surface (smooth_surface.hpp).
 
-/// Cosine of the angle between two triangles beyond which their edge stays sharp [-]. 40 degrees: between a circle of 9
-/// sides, which is smooth, and a hexagonal prism, which is not. (0, 1).
+/// Cosine of the angle between two triangles beyond which their edge stays sharp [-]. 40 degrees: between a
+/// circle of 9 sides, which is smooth, and a hexagonal prism, which is not. (0, 1).
 inline constexpr double crease_cosine = 0.77;
-/// Start of a ray through the body, over its longest length [-]: the triangles that the point lies on do not count.
+/// Start of a ray through the body, over its longest length [-]: the triangles that the point lies on do not
+/// count.
 inline constexpr double ray_start = 1e-4;
 
 // Wanted edge length (edge_length.hpp).
 
-/// Largest growth of h by which vertices go to thin parts [-]: what docs/accuracy.md's thin bodies gain, others lose little.
+/// Largest growth of h by which vertices go to thin parts [-]: what docs/accuracy.md's thin bodies gain,
+/// others lose little.
 inline constexpr double max_growth_of_h = 1.25;
 /// Shortest edge in thin parts over h [-]: a plate's thickness is met until it is a quarter of h. (0, 1].
 inline constexpr double min_thin_ratio = 0.25;
@@ -33,24 +36,29 @@ inline constexpr double growth_slack = 1e-9;
 
 // Remeshing (remesh.hpp). Split and collapse: [botsch2004].
 
-/// Edges are split when longer than this times what is wanted, collapsed when shorter [-]. A split edge is then no
-/// candidate for a collapse.
+/// Edges are split when longer than this times what is wanted, collapsed when shorter [-]. A split edge is
+/// then no candidate for a collapse.
 inline constexpr double split_ratio = 4.0 / 3.0, collapse_ratio = 0.8;
-/// Vertices over the wanted number: of the first uniform mesh, and of a mesh that is made coarser before all else [-].
+/// Vertices over the wanted number: of the first uniform mesh, and of a mesh that is made coarser before all
+/// else [-].
 inline constexpr double fine_vertices = 4, too_fine_vertices = 8;
-/// Usual ratio of made to expected vertices [-]: triangles are not all alike, creases are cut into whole edges.
+/// Usual ratio of made to expected vertices [-]: triangles are not all alike, creases are cut into whole
+/// edges.
 inline constexpr double usual_excess = 1.1;
 /// Fewest vertices aimed at, over the wanted number [-].
 inline constexpr double min_aim = 0.75;
 /// A pass of collapses that removes less than this of the triangles is the last [-].
 inline constexpr double min_progress = 0.01;
-/// Thinnest triangle that a collapse may make: area over the square of its longest edge [-]; equilateral 0.43.
+/// Thinnest triangle that a collapse may make: area over the square of its longest edge [-]; equilateral
+/// 0.43.
 inline constexpr double min_shape = 0.05;
 /// Cosine of the largest turn of a triangle by a collapse or a relaxation [-]: 60 degrees.
 inline constexpr double max_turn_cosine = 0.5;
-/// Sum of the angles opposite an edge beyond which it is flipped [rad]: Delaunay's pi, with a margin so that flips end.
+/// Sum of the angles opposite an edge beyond which it is flipped [rad]: Delaunay's pi, with a margin so that
+/// flips end.
 inline constexpr double flip_angle = 3.2;
-/// Cosine of the largest angle between a flipped edge's triangles and the plane of both before [-]: 37 degrees.
+/// Cosine of the largest angle between a flipped edge's triangles and the plane of both before [-]: 37
+/// degrees.
 inline constexpr double flip_cosine = 0.8;
 /// Part of the way to the neighbours' weighted mean that a relaxation takes [-]. (0, 1]; at 1 it may swing.
 inline constexpr double relaxation = 0.7;
@@ -59,29 +67,35 @@ inline constexpr double min_area_ratio = 0.2;
 
 // Boundary element mesh (make_element_mesh.hpp).
 
-/// A rim that crosses an edge nearer to one of its ends than this goes through the end [edge]: no triangle without area.
+/// A rim that crosses an edge nearer to one of its ends than this goes through the end [edge]: no triangle
+/// without area.
 inline constexpr double rim_at_end = 0.02;
-/// Position at which a corner's normal is read, from the corner to the centre [-]: inside its own smooth part.
+/// Position at which a corner's normal is read, from the corner to the centre [-]: inside its own smooth
+/// part.
 inline constexpr double corner_offset = 0.1;
-/// Cosine of the angle between normals beyond which a kept edge is a crease of the new mesh [-]: 32 degrees, less than
-/// crease_cosine's 40 because the normals are the smooth surface's.
+/// Cosine of the angle between normals beyond which a kept edge is a crease of the new mesh [-]: 32 degrees,
+/// less than crease_cosine's 40 because the normals are the smooth surface's.
 inline constexpr double kept_crease_cosine = 0.85;
 /// Least 1 - cos^2 of a crease's angle at which both sides' tangent planes tell the middle of the edge [-].
 inline constexpr double min_crease_determinant = 0.1;
-/// Largest distance of an edge's middle from its chord [edge]: a half circle's is 0.5, what is more is a bad normal.
+/// Largest distance of an edge's middle from its chord [edge]: a half circle's is 0.5, what is more is a bad
+/// normal.
 inline constexpr double max_bulge = 0.15;
-/// How far a crease's load is drawn into its smooth part: of the mean edge, and at most of its triangles' height [-].
-/// There the tangent plane is the surface's. (0, 0.5).
+/// How far a crease's load is drawn into its smooth part: of the mean edge, and at most of its triangles'
+/// height [-]. There the tangent plane is the surface's. (0, 0.5).
 inline constexpr double load_inset = 0.35, max_load_inset = 0.45;
 
 // Load mesh (load_positions.hpp).
 
-/// Length of an edge, over the distance of its middle to the next free crease, beyond which a load acts at its middle,
-/// too [-]. Without these loads a contact between two nodes next to a crease is three times as wrong as one at a node.
+/// Length of an edge, over the distance of its middle to the next free crease, beyond which a load acts at
+/// its middle, too [-]. Without these loads a contact between two nodes next to a crease is three times as
+/// wrong as one at a node.
 inline constexpr double middle_ratio = 0.5;
-/// Cosine of the angle between the normals of neighbours that tell a gradient [-]: what lies round a corner does not.
+/// Cosine of the angle between the normals of neighbours that tell a gradient [-]: what lies round a corner
+/// does not.
 inline constexpr double gradient_cosine = 0.3;
-/// Least determinant, over the square of the trace, of neighbours that tell a gradient in both directions [-]; at most 1/4.
+/// Least determinant, over the square of the trace, of neighbours that tell a gradient in both directions
+/// [-]; at most 1/4.
 inline constexpr double min_gradient_determinant = 0.1;
 /// Penalty on gradients that the neighbours do not tell, over the trace of their matrix [-].
 inline constexpr double gradient_penalty = 1e-6;
@@ -92,24 +106,24 @@ inline constexpr double min_cell = 1e-3, min_cell_length = 1e-30;
 
 /// Least cosine of the angle between the normals of neighbours that tell second derivatives [-].
 inline constexpr double curvature_cosine = 0.3;
-/// Penalty on second derivatives over the slopes' weight [-]: 0.05^2, 0.3 % of a derivative that is well seen. It makes
-/// them small where neighbours do not tell them, as across a strip of two rows.
+/// Penalty on second derivatives over the slopes' weight [-]: 0.05^2, 0.3 % of a derivative that is well
+/// seen. It makes them small where neighbours do not tell them, as across a strip of two rows.
 inline constexpr double curvature_penalty = 0.05 * 0.05;
 /// The same on slopes [-]: only against a singular matrix.
 inline constexpr double slope_penalty = 1e-9;
 
 // Rotation of the surface (rotation_table.hpp).
 
-/// Penalties on the slopes along the surface, only against a singular matrix, and on the normal derivative, which smooth
-/// neighbours hardly tell; over the slopes' weight [-].
+/// Penalties on the slopes along the surface, only against a singular matrix, and on the normal derivative,
+/// which smooth neighbours hardly tell; over the slopes' weight [-].
 inline constexpr double tangent_penalty = 1e-6, normal_penalty = 0.01;
 /// Weight of slopes that are none.
 inline constexpr double no_weight = 1e-30;
 
 // Boundary elements (boundary_element.hpp).
 
-/// Distance from an element, in its longest edges, beyond which it is not divided, beyond which seven points do for all of
-/// it, and beyond which three do [-]. Radon's rule is then right to about 1e-4 of the integral.
+/// Distance from an element, in its longest edges, beyond which it is not divided, beyond which seven points
+/// do for all of it, and beyond which three do [-]. Radon's rule is then right to about 1e-4 of the integral.
 inline constexpr double near_elements = 1.8, seven_point_elements = near_elements + 0.6,
                         three_point_elements = 5;
 /// An element is cut in four at most so many times: down to 1/64 of its edge.
@@ -121,18 +135,21 @@ inline constexpr double min_share = 1e-9;
 
 // Influence functions (influence_functions.hpp). Distances in the load's mean edge.
 
-/// Distance from a load within which the near field's traction is integrated itself, not by its values at the nodes [-].
+/// Distance from a load within which the near field's traction is integrated itself, not by its values at the
+/// nodes [-].
 inline constexpr double near_traction = 2.2;
-/// Distance from a load within which its traction is not smooth over an element [-]: no nodal value there, and points of
-/// Duffy's map.
+/// Distance from a load within which its traction is not smooth over an element [-]: no nodal value there,
+/// and points of Duffy's map.
 inline constexpr double singular_traction = 0.6;
 /// Points of that map in each direction.
 inline constexpr int traction_points = 6;
-/// Distance, over that of the farthest vertex of the near elements, beyond which forces at their vertices do [-].
+/// Distance, over that of the farthest vertex of the near elements, beyond which forces at their vertices do
+/// [-].
 inline constexpr double far_from_elements = 1.5;
 /// Distance from a load within which a vertex is the load's own [-].
 inline constexpr double own_vertex = 0.3;
-/// At the load's own vertex: radius within which 1/R^2 is cut off, and radius of the disc over which u_near is averaged [-].
+/// At the load's own vertex: radius within which 1/R^2 is cut off, and radius of the disc over which u_near
+/// is averaged [-].
 inline constexpr double own_cut_off = 0.35, own_disc = 0.5;
 /// Loads, and right-hand sides, that are worked on together: their matrices stay in the cache.
 inline constexpr int loads_together = 64, solved_together = 48;
@@ -143,8 +160,8 @@ inline constexpr int loads_together = 64, solved_together = 48;
 inline constexpr double min_second_moment = 0.1;
 /// A weight that is none [-].
 inline constexpr double min_weight = 1e-12;
-/// Depth of a patch's edge over the deepest of six positions on it [-]. Of a quadric's edge one of six lies within 30
-/// degrees of the deepest, whose depth is at most 4/3 of what is seen there.
+/// Depth of a patch's edge over the deepest of six positions on it [-]. Of a quadric's edge one of six lies
+/// within 30 degrees of the deepest, whose depth is at most 4/3 of what is seen there.
 inline constexpr double deepest_edge = 4.0 / 3;
 
 }  // namespace palpate::detail::setup

@@ -6,12 +6,12 @@
 ///     B(x) = min over y of (clamp(t(y), f h, h) + g dist(x, y))
 ///     L(x) = min(B, 3/4 B + g dist(x, crease), r B + g dist(x, rim), 2 r B + g dist(x, rim along a crease))
 ///
-/// | symbol | name                                      | value                                               |
-/// |--------|-------------------------------------------|-----------------------------------------------------|
-/// | h      | edge length where nothing is special [m]  | N = integral of 2 / (sqrt(3) L^2) over the surface  |
-/// | t      | thickness, along the inward normal [m]    | of the surface                                      |
-/// | f      | shortest edge in thin parts over h [-]    | 1/4 to 1, the least that lets h grow by 1/4 at most |
-/// | r, g   | `rim_ratio`, `growth` [-]                 | RemeshParams                                        |
+/// | symbol | name                                     | value                                              |
+/// |--------|------------------------------------------|----------------------------------------------------|
+/// | h      | edge length where nothing is special [m] | N = integral of 2 / (sqrt(3) L^2) over the surface |
+/// | t      | thickness, along the inward normal [m]   | of the surface                                     |
+/// | f      | shortest edge in thin parts over h [-]   | 1/4 to 1: h grows by 1/4 at most                   |
+/// | r, g   | `rim_ratio`, `growth` [-]                | RemeshParams                                       |
 ///
 /// Creases: the convex ones. Why: bending needs edges of the thickness. Next to a crease the answer to a
 /// contact varies over the distance to it. Traction at the rim grows like dist^-0.5 within a smooth part,

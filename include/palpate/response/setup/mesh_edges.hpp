@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Edges of a closed triangle mesh, and the smooth parts of its surface around each vertex. Set-up only.
+/// @file Edges of a closed triangle mesh, and the smooth parts of its surface around each vertex. Set-up
+/// only.
 
 #include <palpate/core/error.hpp>
 #include <palpate/core/vector.hpp>

@@ -13,7 +13,7 @@
 ///
 /// Where u is drawn linearly nevertheless, it is raised at the vertices, so that what the bends leave out is
 /// right in the mean:
-///     r_v = sum int phi_v 4 phi_c phi_d b_cd dS / sum int phi_v dS     over the triangles around v, b by K there
+///     r_v = sum int phi_v 4 phi_c phi_d b_cd dS / sum int phi_v dS   over the triangles around v, b by K there
 /// Of a quadratic's error over equal triangles a quarter is left where it bends in all directions alike, two
 /// fifths where in one.
 

@@ -35,11 +35,11 @@ struct LoadNode {
 /// The whole surface of the boundary element mesh, fixed region included: closed, so that the position of a
 /// point of the surface never jumps, at a rim or across a thin part. Its nodes, in this order:
 ///
-/// | nodes  | where                                                         | field of a load                                |
-/// |--------|---------------------------------------------------------------|------------------------------------------------|
-/// | solved | nodes of the boundary element mesh with a free triangle, middles of edges | boundary equation                             |
-/// | held   | the other nodes                                               | none: w = -u_near                              |
-/// | edge   | vertices of the boundary element mesh where smooth parts meet            | mean of the loads of the nodes that meet there |
+/// | nodes  | where                                              | field of a load                           |
+/// |--------|----------------------------------------------------|-------------------------------------------|
+/// | solved | element nodes with a free triangle; edges' middles | boundary equation                         |
+/// | fixed  | the other nodes                                    | none: w = -u_near                         |
+/// | edge   | element vertices where smooth parts meet           | mean of the loads of the nodes that meet  |
 ///
 /// Only solved nodes have influence functions; the others' loads are shared among them (`shares`), and what
 /// is left falls on what is held and moves nothing. At most three parts of an edge node count.

@@ -4,11 +4,11 @@
 /// @file Loads that pull a patch apart or turn it, and what the body's correction answers; for the patch
 /// table.
 ///
-/// | number | load of unit moment on the flat disc's weight, p from its centre          | as a tensor A        |
-/// |--------|---------------------------------------------------------------------------|----------------------|
-/// | 0      | radial double force, sum p.f = 1                                          | I                    |
-/// | 1, 2   | shears s = t1 t1 - t2 t2, t1 t2 + t2 t1, moment sum f p^T = s / 2         | s                    |
-/// | 3, 4   | tilts along t1, t2, m the inward normal, sum p (f.m) = t                  | 2 m t^T              |
+/// | number | load of unit moment on the flat punch's weight, p from its centre         | tensor A |
+/// |--------|---------------------------------------------------------------------------|----------|
+/// | 0      | radial force dipole, sum p.f = 1                                          | I        |
+/// | 1, 2   | shear dipoles s = t1 t1 - t2 t2, t1 t2 + t2 t1, moment sum f p^T = s / 2  | s        |
+/// | 3, 4   | bending couples along t1, t2, m the inward normal, sum p (f.m) = t        | 2 m t^T  |
 /// t1 = perpendicular(normal), t2 = normal x t1. A node of weight g at p has the force A q, q = g p / sum g
 /// p^2, less where part of the patch is held: none from half on.
 

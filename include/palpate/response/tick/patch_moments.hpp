@@ -45,8 +45,8 @@ struct PatchMoments {
     return smooth_step((a / size - tick::narrow_patch) / (tick::wide_patch - tick::narrow_patch));
   }
 
-  /// Reads G and W of a patch of radius a at a position of the load mesh. `counts`: factor of w; `dipole`: that
-  /// of a unit normal force (bonded_dipole); `part`: share that the moments have.
+  /// Reads G and W of a patch of radius a at a position of the load mesh. `counts`: factor of w; `dipole`:
+  /// that of a unit normal force (bonded_dipole); `part`: share that the moments have.
   void read(const ResponseField& field, const LoadPosition& position, const PatchTable::Level& level,
             const Vec3<double>& inward, double a, double counts, double dipole, double part) noexcept {
     share = part;

@@ -47,13 +47,13 @@ struct NodeWeight {
 class PatchTable {
  public:
   struct Own {
-    float pair
-        [6]
-        [6];  ///< W_00, W_11, W_22, W_01 + W_10, W_12 + W_21, W_20 + W_02, each xx, yy, zz, xy, yz, zx [1/m]
+    /// W_00, W_11, W_22, W_01 + W_10, W_12 + W_21, W_20 + W_02, each xx, yy, zz, xy, yz, zx [1/m].
+    float pair[6][6];
   };
   struct Second {
-    float mean
-        [12];  ///< of the unit radial double force, the unit tilts along the node's two tangents, the unit twist [1/m^2]
+    /// Of the unit radial force dipole, of the unit bending couples along the node's two tangents, of the unit
+    /// torsional couple [1/m^2].
+    float mean[12];
   };
   using Moments = MomentRow;
   using Share = LoadMesh::Share;

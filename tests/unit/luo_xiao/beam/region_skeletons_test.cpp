@@ -143,7 +143,8 @@ TEST_CASE("coupled is reciprocal: d_j under a force at k is d_k under that force
     auto contacts = random_contacts<double>(random, 2);
     const auto several = make<double>(points);
     const auto literal = make<double, SuperposedRegions>(points);
-    // Displacement of contact j under a unit force at contact k; superposed: under the force that k transmits to it.
+    // Displacement of contact j under a unit force at contact k; superposed: under the force that k transmits
+    // to it.
     const auto response = [&](std::size_t j, std::size_t k, int c, bool coupled) -> Vec3<double> {
       contacts[j].force.setZero();
       contacts[k].force = Vec3<double>::Unit(c);
