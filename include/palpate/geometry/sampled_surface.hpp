@@ -3,8 +3,8 @@
 
 /// @file  Any body's depth from samples on a grid: a few dozen instructions per point, whatever the body.
 
-#include <palpate/core/detail/simd_shuffle.hpp>
 #include <palpate/core/error.hpp>
+#include <palpate/core/simd_shuffle.hpp>
 #include <palpate/geometry/concept.hpp>
 
 #include <algorithm>

@@ -18,7 +18,7 @@ struct ResponseContact {
   S radius = S(0);                         ///< a > 0 [m]
   Vec3<S> displacement = Vec3<S>::Zero();  ///< d; d.normal < 0 presses [m]
   Vec3<S> rotation =
-      Vec3<S>::Zero();  ///< vector of the tool's since it touched [rad]; accurate to 0.3, below a half turn
+      Vec3<S>::Zero();  ///< rotation vector since it touched [rad]; accurate to 0.3, below a half turn
 };
 
 /// True when a contact is finite, of sensible size, with a unit normal, turned by less than a half turn.

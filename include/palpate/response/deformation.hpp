@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Deformation model from a response field: what boundary elements say the whole surface does.
+/// @file  Deformation model from a response field: displacement of the whole surface by boundary elements.
 
 #include <palpate/display/mesh_normals.hpp>
 #include <palpate/display/vertex_writer.hpp>
@@ -23,10 +23,10 @@ namespace palpate {
 /// | a      | radius of the patch    | m    | sqrt(area / pi), at least `least_radius` and |D| / 2         |
 /// |        | `Params::least_radius` | m    | > 0, or 0 for a quarter of the element mesh's edge length    |
 ///
-/// |D| / 2 is where second order in depth ends, and keeps a point contact from drawing a needle. `Contacts`: how
-/// many are drawn at once; more are left out, region_overflow. A contact that is not finite is left out,
-/// invalid_pose. With the same contacts as in the last write nothing is read or written. All vertices move:
-/// `Moved` counts them all.
+/// The least radius |D| / 2 is where second order in depth ends; it keeps a point contact from drawing a
+/// needle. `Contacts`: how many are drawn at once; more are left out, region_overflow. A contact that is not
+/// finite is left out, invalid_pose. With the same contacts as in the last write nothing is read or written.
+/// All vertices move: `Moved` counts them all.
 ///
 /// Set-up reports a least radius < 0, and a mesh that is not finite or, with normals, not closed.
 template <Real S, std::size_t Contacts = 4>
@@ -105,7 +105,7 @@ class ResponseFieldDeformation {
     return moved;
   }
 
-  /// What the field says the tool exerts on the object in the contacts of the last write [N].
+  /// Forces that the tool exerts on the object in the contacts of the last write, by the field [N].
   [[nodiscard]] std::span<const Vec3<S>> forces() const noexcept { return {forces_.data(), last_count_}; }
   [[nodiscard]] const ResponseField& field() const noexcept { return *field_; }
   [[nodiscard]] const Params& params() const noexcept { return p_; }
@@ -113,8 +113,8 @@ class ResponseFieldDeformation {
  private:
   static constexpr const char* name = "ResponseFieldDeformation";
 
-  // Puts lanes of vertices where they belong, and finds the box around them. With normals they go to the
-  // places that those are made from, and from there row by row to the caller.
+  // Writes vertices to their slots, and finds the box around them. With normals they go to the buffer that
+  // the normals are made from, and from there row by row to the caller.
   template <Real T>
   struct Put {
     using Simd = detail::Simd4;

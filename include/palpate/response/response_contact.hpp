@@ -71,8 +71,8 @@ class ResponseTick {
     each(display, put);
   }
 
-  /// The same, handed out: emit(slot, u) with a lane of displacements from that slot on; a vertex may have
-  /// several slots, all the same. An `emit` that can be assigned is copied and put back.
+  /// The same by calls of emit(slot, u), with a SIMD vector of displacements from that slot on; a vertex may
+  /// have several slots, all the same. An `emit` that can be assigned is copied and put back.
   ///
   /// How: tick/field_sum.hpp, tick/drawing.hpp.
   template <class Emit>

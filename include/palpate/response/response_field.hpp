@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Response field: an object's elastic answer to contact anywhere on its surface, computed once at
+/// @file Response field: an object's elastic response to contact anywhere on its surface, computed once at
 /// set-up from the closed surface mesh, E, nu and the fixed region. The tick that uses it is in
 /// response_contact.hpp.
 ///
-/// | symbol | name                          | unit | range                                   |
-/// |--------|-------------------------------|------|-----------------------------------------|
-/// | E      | Young's modulus               | Pa   | > 0                                     |
-/// | nu     | Poisson's ratio               | -    | [0, 1/2]; 1/2 is exact, nothing locks   |
-/// | n      | vertices of the boundary element mesh    | -    | [20, 5000]; error about 1/n             |
+/// | symbol | name                                  | unit | range                                 |
+/// |--------|---------------------------------------|------|---------------------------------------|
+/// | E      | Young's modulus                       | Pa   | > 0                                   |
+/// | nu     | Poisson's ratio                       | -    | [0, 1/2]; 1/2 is exact, nothing locks |
+/// | n      | vertices of the boundary element mesh | -    | [20, 5000]; error about 1/n           |
 ///
 /// Memory: 84 n m bytes for the influence functions, m the positions of loads (load_positions.hpp): with n =
 /// 600 34 MB for a smooth body, 95 to 110 MB for one that is all next to its edges, as a block; see
 /// `memory()`. During set-up about twice that and 150 n^2 bytes more. Set-up: O(n^3), seconds. Several pieces
-/// are allowed, each held somewhere. Limits: small strain per unit load; parts thinner than an edge of the
+/// are allowed, each fixed somewhere. Limits: small strain per unit load; parts thinner than an edge of the
 /// boundary element mesh bend too little: `unresolved_area()`. Reports (error.hpp) bad E, nu, mesh or fixed
 /// region. Source: [brebbia1984], [james1999].
 
@@ -57,16 +57,16 @@ class ResponseField {
     unsigned threads = 2;                       ///< at set-up only; see parallel.hpp for hosts without
     std::function<void(double)> progress = {};  ///< called in the calling thread with what is done, 0 to 1
   };
-  /// Fields per solved node of the load mesh: unit forces along x, y, z; unit radial double force; unit
-  /// tilts along its two tangents; unit twist about its inward normal.
+  /// Fields per solved node of the load mesh: unit forces along x, y, z; unit radial force dipole; unit
+  /// bending couples along its two tangents; unit torsional couple about its inward normal.
   static constexpr std::size_t loads = InfluenceFunctions::loads;
 
-  /// `fixed` is true where the object is held; the mesh is cut along its boundary.
+  /// `fixed` is true where the object is fixed; the mesh is cut along its boundary.
   template <Real S>
   ResponseField(const MeshData<S>& mesh, const FixedRegion& fixed, const Params& params) {
     build(to_double(mesh), fixed, params);
   }
-  /// The object is held at the listed vertices: on every triangle that has all three of its corners in the
+  /// The object is fixed at the listed vertices: on every triangle that has all three of its corners in the
   /// list.
   template <Real S>
   ResponseField(const MeshData<S>& mesh, const std::vector<std::uint32_t>& fixed_vertices,

@@ -27,14 +27,14 @@ struct DepthFactor {
   [[nodiscard]] double at(double beta) const noexcept { return shallow + deep * beta; }
 };
 
-/// | group              | fitted on                                                                        |
-/// |--------------------|----------------------------------------------------------------------------------|
-/// | near the patch     | half-space pressed normally and askew at nu = 0.49, beyond its own linear field  |
-/// | loads and forces   | cube, block, wall and two ellipsoids, normal and skew                            |
-/// | rotation           | all references of docs/accuracy.md                                               |
-/// | rotated tool       | half-space and block, tilted                                                     |
-/// | sphere             | half-space, block, slab, two ellipsoids                                          |
-/// | change with nu     | a normal, a skew and a tilted push and a sphere at nu = 0.3                      |
+/// | group            | fitted on                                                                       |
+/// |------------------|---------------------------------------------------------------------------------|
+/// | near the patch   | half-space pressed normally and askew at nu = 0.49, beyond its own linear field |
+/// | loads and forces | cube, block, wall and two ellipsoids, normal and skew                           |
+/// | rotation         | all references of docs/accuracy.md                                              |
+/// | rotated tool     | half-space and block, rotated tool                                              |
+/// | sphere           | half-space, block, slab, two ellipsoids                                         |
+/// | change with nu   | a normal, a skew and a rotated push and a sphere at nu = 0.3                    |
 ///
 /// Not fitted, thus not here: the radial force dipole -nu/(1-nu) F_n d_n, F_n at most twice the half-space's
 /// force, and the force by which a body that spreads under the patch stiffens.

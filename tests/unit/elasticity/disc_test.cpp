@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <palpate/core/detail/simd_shuffle.hpp>
+#include <palpate/core/simd_shuffle.hpp>
 #include <palpate/elasticity/flat_punch.hpp>
 #include <palpate/elasticity/point_load.hpp>
 

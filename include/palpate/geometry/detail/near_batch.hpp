@@ -3,7 +3,7 @@
 
 /// @file  Closest points and means of values (near_blend.hpp) for many points at once.
 
-#include <palpate/core/detail/simd_shuffle.hpp>
+#include <palpate/core/simd_shuffle.hpp>
 #include <palpate/geometry/detail/near_blend.hpp>
 #include <palpate/geometry/detail/near_triangles.hpp>
 

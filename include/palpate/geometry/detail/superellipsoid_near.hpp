@@ -4,7 +4,7 @@
 /// @file  Depth of points inside a superellipsoid near its surface, many at once.
 
 #include <palpate/core/absent.hpp>
-#include <palpate/core/detail/simd_shuffle.hpp>
+#include <palpate/core/simd_shuffle.hpp>
 #include <palpate/geometry/concept.hpp>
 #include <palpate/geometry/detail/superellipsoid_newton.hpp>
 

@@ -7,10 +7,10 @@
 /// Somigliana's identity at every vertex x, u and geometry quadratic, known t linear on each triangle, mu =
 /// 1:
 ///     c u(x) + int T(x,y) u(y) dS = int U(x,y) t(y) dS       ->       H u = G t
-/// u at the middles of edges is no unknown: the neighbours tell it (mid_edge_fit.hpp). So they do with the
-/// unknown t of the fixed region, where none of them is free. A rigid translation has no traction, so H's
-/// diagonal block is minus the sum of the others in its row: neither c nor a principal value is computed.
-/// Unknown: u at free vertices, t at fixed ones. Source: [brebbia1984].
+/// u at the middles of edges is no unknown: it follows from the neighbours (mid_edge_fit.hpp). So does the
+/// unknown t of the fixed region, where none of the neighbours is free. A rigid translation has no traction,
+/// so H's diagonal block is minus the sum of the others in its row: neither c nor a principal value is
+/// computed. Unknown: u at free vertices, t at fixed ones. Source: [brebbia1984].
 
 #include <palpate/elasticity/kelvin.hpp>
 #include <palpate/response/setup/constants.hpp>
@@ -122,7 +122,7 @@ class BoundaryElements {
   }
   [[nodiscard]] const detail::Matrix& H_fixed() const noexcept { return H_fixed_; }  ///< 3n x 3 fixed
 
-  /// Solves in position. Each column: in, G t - H_fixed u_fixed; out, u at free vertices, t at fixed ones.
+  /// Solves in place. Each column: in, G t - H_fixed u_fixed; out, u at free vertices, t at fixed ones.
   void solve(detail::Matrix& columns) const {
     const Eigen::Index block = detail::setup::solved_together, count = (columns.cols() + block - 1) / block;
     detail::parallel_for(static_cast<std::size_t>(count), threads_, [&](std::size_t b) {
@@ -182,7 +182,7 @@ class BoundaryElements {
     });
   }
 
-  // Of each edge: do it and all vertices that tell its bend lie in the fixed region?
+  // For each edge: whether it and all vertices of its mid-edge correction lie in the fixed region.
   [[nodiscard]] std::vector<char> edges_within_fixed() const {
     std::vector<char> out(bend_.size(), 1);
     for (std::size_t t = 0; t < elements_.size(); ++t)

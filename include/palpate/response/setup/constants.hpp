@@ -14,20 +14,20 @@ namespace palpate::detail::setup {
 /// Cosine of the angle between two triangles beyond which their edge stays sharp [-]. 40 degrees: between a
 /// circle of 9 sides, which is smooth, and a hexagonal prism, which is not. (0, 1).
 inline constexpr double crease_cosine = 0.77;
-/// Start of a ray through the body, over its longest length [-]: the triangles that the point lies on do not
-/// count.
+/// Start of a ray through the body, over its longest length [-], so that it does not meet the triangles that
+/// the point lies on.
 inline constexpr double ray_start = 1e-4;
 
 // Wanted edge length (edge_length.hpp).
 
-/// Largest growth of h by which vertices go to thin parts [-]: what docs/accuracy.md's thin bodies gain,
-/// others lose little.
+/// Largest growth of h by which vertices go to thin parts [-]. Chosen.
 inline constexpr double max_growth_of_h = 1.25;
-/// Shortest edge in thin parts over h [-]: a plate's thickness is met until it is a quarter of h. (0, 1].
+/// Shortest edge in thin parts over h [-]: edges are as short as a plate is thick, down to a quarter of h.
+/// (0, 1].
 inline constexpr double min_thin_ratio = 0.25;
 /// Edge length at a convex crease over that of the body [-]. In (rim_ratio, 1].
 inline constexpr double crease_ratio = 0.75;
-/// Square of a distance that is none, over the body's [-]: no crease or no rim.
+/// Square of the distance that stands for no crease or no rim, over that of the body's size [-].
 inline constexpr double far_square = 1e6;
 /// Bracket of the bisection for h, over its last value [-].
 inline constexpr double min_h_factor = 0.02, max_h_factor = 50;
@@ -60,7 +60,8 @@ inline constexpr double flip_angle = 3.2;
 /// Cosine of the largest angle between a flipped edge's triangles and the plane of both before [-]: 37
 /// degrees.
 inline constexpr double flip_cosine = 0.8;
-/// Part of the way to the neighbours' weighted mean that a relaxation takes [-]. (0, 1]; at 1 it may swing.
+/// Part of the distance to the neighbours' weighted mean that a relaxation takes [-]. (0, 1]; at 1 it may
+/// oscillate.
 inline constexpr double relaxation = 0.7;
 /// Smallest area of a triangle after a relaxation over that before [-].
 inline constexpr double min_area_ratio = 0.2;
@@ -78,11 +79,11 @@ inline constexpr double corner_offset = 0.1;
 inline constexpr double kept_crease_cosine = 0.85;
 /// Least 1 - cos^2 of a crease's angle at which both sides' tangent planes tell the middle of the edge [-].
 inline constexpr double min_crease_determinant = 0.1;
-/// Largest distance of an edge's middle from its chord [edge]: a half circle's is 0.5, what is more is a bad
+/// Largest distance of an edge's middle from its chord [edge]: a half circle's is 0.5, and more means a bad
 /// normal.
 inline constexpr double max_bulge = 0.15;
-/// How far a crease's load is drawn into its smooth part: of the mean edge, and at most of its triangles'
-/// height [-]. There the tangent plane is the surface's. (0, 0.5).
+/// Distance by which a crease's load is moved into its smooth part, over the mean edge; its bound over the
+/// height of its triangles [-]. There the tangent plane is the surface's. (0, 0.5).
 inline constexpr double load_inset = 0.35, max_load_inset = 0.45;
 
 // Load mesh (load_positions.hpp).
@@ -91,23 +92,25 @@ inline constexpr double load_inset = 0.35, max_load_inset = 0.45;
 /// its middle, too [-]. Without these loads a contact between two nodes next to a crease is three times as
 /// wrong as one at a node.
 inline constexpr double middle_ratio = 0.5;
-/// Cosine of the angle between the normals of neighbours that tell a gradient [-]: what lies round a corner
-/// does not.
+/// Least cosine of the angle between the normals of neighbours that enter a gradient [-]: those round a
+/// corner do not.
 inline constexpr double gradient_cosine = 0.3;
-/// Least determinant, over the square of the trace, of neighbours that tell a gradient in both directions
-/// [-]; at most 1/4.
+/// Least determinant, over the square of the trace, with which neighbours determine a gradient in both
+/// directions [-]; at most 1/4.
 inline constexpr double min_gradient_determinant = 0.1;
-/// Penalty on gradients that the neighbours do not tell, over the trace of their matrix [-].
+/// Penalty on gradients that the neighbours do not determine, over the trace of their matrix [-].
 inline constexpr double gradient_penalty = 1e-6;
-/// Least size of a search grid's cell over the largest size of the body [-], and a length that is none [m].
+/// Least size of a search grid's cell over the largest size of the body [-], and a length that counts as zero
+/// [m].
 inline constexpr double min_cell = 1e-3, min_cell_length = 1e-30;
 
 // Quadratic correction (mid_edge_fit.hpp).
 
-/// Least cosine of the angle between the normals of neighbours that tell second derivatives [-].
+/// Least cosine of the angle between the normals of neighbours that enter second derivatives [-].
 inline constexpr double curvature_cosine = 0.3;
-/// Penalty on second derivatives over the slopes' weight [-]: 0.05^2, 0.3 % of a derivative that is well
-/// seen. It makes them small where neighbours do not tell them, as across a strip of two rows.
+/// Penalty on second derivatives over the slopes' weight [-]: 0.05^2, 0.3 % of a derivative that the
+/// neighbours determine well. It keeps them small where the neighbours do not determine them, as across a
+/// strip of two rows.
 inline constexpr double curvature_penalty = 0.05 * 0.05;
 /// The same on slopes [-]: only against a singular matrix.
 inline constexpr double slope_penalty = 1e-9;
@@ -115,22 +118,22 @@ inline constexpr double slope_penalty = 1e-9;
 // Rotation of the surface (rotation_table.hpp).
 
 /// Penalties on the slopes along the surface, only against a singular matrix, and on the normal derivative,
-/// which smooth neighbours hardly tell; over the slopes' weight [-].
+/// which neighbours on a smooth surface hardly determine; over the slopes' weight [-].
 inline constexpr double tangent_penalty = 1e-6, normal_penalty = 0.01;
-/// Weight of slopes that are none.
+/// Weight that keeps a matrix regular where no neighbour gives slopes.
 inline constexpr double no_weight = 1e-30;
 
 // Boundary elements (boundary_element.hpp).
 
 /// Distance from an element, in its longest edges, beyond which it is not divided, beyond which seven points
-/// do for all of it, and beyond which three do [-]. Radon's rule is then right to about 1e-4 of the integral.
+/// do for all of it, and beyond which three do [-]. Chosen.
 inline constexpr double near_elements = 1.8, seven_point_elements = near_elements + 0.6,
                         three_point_elements = 5;
 /// An element is cut in four at most so many times: down to 1/64 of its edge.
 inline constexpr int max_divisions = 6;
-/// Points of Gauss's rule in each direction over an element that holds the position [-].
+/// Points of Gauss's rule in each direction over an element that contains the position [-].
 inline constexpr int self_points = 8;
-/// Part of an element below which it is none [-].
+/// A part of an element smaller than this is left out [-].
 inline constexpr double min_share = 1e-9;
 
 // Influence functions (influence_functions.hpp). Distances in the load's mean edge.
@@ -143,25 +146,25 @@ inline constexpr double near_traction = 2.2;
 inline constexpr double singular_traction = 0.6;
 /// Points of that map in each direction.
 inline constexpr int traction_points = 6;
-/// Distance, over that of the farthest vertex of the near elements, beyond which forces at their vertices do
-/// [-].
+/// Distance, over that of the farthest vertex of the near elements, beyond which forces at their vertices
+/// replace an integral [-].
 inline constexpr double far_from_elements = 1.5;
 /// Distance from a load within which a vertex is the load's own [-].
 inline constexpr double own_vertex = 0.3;
 /// At the load's own vertex: radius within which 1/R^2 is cut off, and radius of the disc over which u_near
 /// is averaged [-].
 inline constexpr double own_cut_off = 0.35, own_disc = 0.5;
-/// Loads, and right-hand sides, that are worked on together: their matrices stay in the cache.
+/// Loads, and right-hand sides, that are worked on together. Chosen.
 inline constexpr int loads_together = 64, solved_together = 48;
 
 // Patch table (patch_table.hpp, moment_loads.hpp).
 
 /// Second moment of a patch's nodes, over the square of their spacing, below which it is one position [-].
 inline constexpr double min_second_moment = 0.1;
-/// A weight that is none [-].
+/// Least sum of weights to divide by [-].
 inline constexpr double min_weight = 1e-12;
 /// Depth of a patch's edge over the deepest of six positions on it [-]. Of a quadric's edge one of six lies
-/// within 30 degrees of the deepest, whose depth is at most 4/3 of what is seen there.
+/// within 30 degrees of the deepest, whose depth is at most 4/3 of that one's.
 inline constexpr double deepest_edge = 4.0 / 3;
 
 }  // namespace palpate::detail::setup

@@ -13,10 +13,10 @@
 /// | f      | shortest edge in thin parts over h [-]   | 1/4 to 1: h grows by 1/4 at most                   |
 /// | r, g   | `rim_ratio`, `growth` [-]                | RemeshParams                                       |
 ///
-/// Creases: the convex ones. Why: bending needs edges of the thickness. Next to a crease the answer to a
-/// contact varies over the distance to it. Traction at the rim grows like dist^-0.5 within a smooth part,
-/// along a right angle's edge like dist^-0.4 only (nu = 1/2) [williams1952]. Where all of a body is thin, no
-/// vertices are left over for its thin parts.
+/// Only convex creases count. Reasons for short edges: bending of a thin part needs edges of its thickness.
+/// Next to a crease the response to a contact varies over the distance to the crease. Traction at the rim
+/// grows like dist^-0.5 within a smooth part, along a right angle's edge like dist^-0.4 only (nu = 1/2)
+/// [williams1952]. Where all of a body is thin, no vertices are left over for its thin parts.
 
 #include <palpate/response/setup/element_mesh.hpp>
 #include <palpate/response/setup/smooth_surface.hpp>
@@ -42,7 +42,7 @@ class EdgeLength {
     h_ = h;
     at_.clear();
   }
-  /// Looks where the vertices are. `features` are sorted keys of edges.
+  /// Measures thickness and distances at the vertices. `features` are sorted keys of edges.
   void measure(const std::vector<Vec3d>& p, const std::vector<Triangle>& t,
                const std::vector<std::uint8_t>& fixed, const std::vector<std::uint64_t>& features) {
     std::vector<Vec3d> crease, rim[2];

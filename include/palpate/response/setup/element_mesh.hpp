@@ -12,7 +12,7 @@
 
 namespace palpate {
 
-/// What the remesher works on. Features are edges that stay: creases and the rim.
+/// What the remesher aims at.
 struct RemeshParams {
   double vertices = 600;   ///< wanted number of vertices [-]
   double rim_ratio = 0.3;  ///< r: edge length at the rim over that of the body [-]
@@ -37,7 +37,7 @@ struct ElementMesh {
   double length = 0;  ///< edge length away from the rim
 };
 
-/// True where the elastic object is held. Called with points of the surface.
+/// True where the elastic object is fixed. Called with points of the surface.
 using FixedRegion = std::function<bool(const Vec3<double>&)>;
 
 }  // namespace palpate

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file The body's correction to the half-space: for a unit force at each node, the field w with u = u_near
-/// + w. Set-up only.
+/// @file Influence functions: for a unit force at each node, the regular part w of the displacement u =
+/// u_near + w. Set-up only.
 ///
-/// u_near: the half-space solution in the node's tangent plane. It meets the elastic equations inside the
-/// body, so w does too, and w is smooth: a coarse mesh resolves it.
+/// u_near: the half-space solution in the node's tangent plane. It satisfies the elastic equations inside the
+/// body, so w does, too, and w is smooth: a coarse mesh resolves it.
 ///     H w = -int U t_near dS + G_fixed t ,   w = -u_near on the fixed region
 /// t_near varies fast only near the node. There t_near less its nodal interpolant is integrated by Duffy's
-/// map; the rest is G times nodal values, which are not t_near's: those whose interpolant has the same
-/// integrals. (Its own are beyond it where it bends, by 10 % at two edges from the node.)
+/// map; the rest is G times nodal values. These are not t_near's own, but those whose interpolant has the
+/// same integrals: t_near is not linear between nodes, and its own values are 10 % too large at two edges
+/// from the node.
 
 #include <palpate/elasticity/flat_punch.hpp>
 #include <palpate/elasticity/point_load.hpp>
@@ -118,8 +119,9 @@ class NearSource {
     return point_load_traction(Vec3d(x - s.source), Vec3d(-s.normal), normal, nu_);
   }
 
-  // Adds to t_near's own values what its bend b between the ends of each edge leaves out: int phi 4 phi_c
-  // phi_d b dS, by the lumped mass of the triangles that are not close. (A consistent mass changes nothing.)
+  // Adds to t_near's own values the integrals of its mid-edge correction b, which linear interpolation leaves
+  // out: int phi 4 phi_c phi_d b dS, by the lumped mass of the triangles that are not close. (A consistent
+  // mass changes nothing.)
   void raise_to_integrals(const LoadNode& s, const std::vector<Close>& close, Eigen::Ref<Matrix> out) const {
     const ElementMesh& m = bem_.mesh();
     Matrix missing = Matrix::Zero(out.rows(), 3);
@@ -205,7 +207,7 @@ namespace detail {
                        columns.middleCols<3>(3 * j));
   });
   bem.solve(w);
-  // The fixed vertices' rows hold tractions: there w = -u_near.
+  // The fixed vertices' rows now contain tractions; the displacement there is w = -u_near.
   for (auto v : bem.fixed())
     for (Eigen::Index j = 0; j < count; ++j) {
       hold(w.middleCols<3>(3 * j), 3 * Eigen::Index(v), v, nodes[std::size_t(j)]);

@@ -60,7 +60,7 @@ class LoadPositions {
   }
 
   [[nodiscard]] LoadMesh load_mesh() const { return {nodes_, triangles_, share_begin_, shares_}; }
-  /// Number of solved and held nodes.
+  /// Number of solved and fixed nodes.
   [[nodiscard]] std::size_t solved_or_fixed() const noexcept { return nodes_.size() - parts_.size(); }
   /// Nodes that an edge's node is the mean of.
   [[nodiscard]] std::span<const std::uint32_t> parts(std::size_t k) const noexcept {
@@ -74,7 +74,7 @@ class LoadPositions {
   using List = std::vector<std::uint32_t>;
   static constexpr std::uint32_t none = ~0u;
 
-  // The part of the boundary element mesh that holds a node's source.
+  // The part of the boundary element mesh that contains a node's source.
   void find_position(LoadNode& node, const List& triangles) const {
     double best = (std::numeric_limits<double>::max)();
     for (auto t : triangles) {
@@ -175,7 +175,7 @@ class LoadPositions {
     whole_.resize(triangles_.size(), t);
   }
 
-  // The nodes around each. A solved node looks at solved ones only: fields bend at the rim.
+  // The neighbours of each node. Those of a solved node are solved ones only: fields have a kink at the rim.
   [[nodiscard]] std::vector<List> rings() const {
     std::vector<List> ring(nodes_.size());
     for (std::size_t t = 0; t < triangles_.size(); ++t)
@@ -187,8 +187,8 @@ class LoadPositions {
     return ring;
   }
   // Least squares over the neighbours: g = argmin sum |g.d_j - (h_j - h_k)|^2 / |d_j|^2 in the tangent plane.
-  // As a load comes near a crease its w grows beyond what the mesh resolves: nodes of creases do not count
-  // where there are others, and up to two edges from a crease a second ring of others does.
+  // As a load comes near a crease its w grows beyond what the mesh resolves: nodes of creases are left out
+  // where there are others, and up to two edges from a crease a second ring of others is added.
   void fit_gradients(const std::vector<List>& ring) {
     std::vector<std::uint8_t> beside_crease(nodes_.size());
     for (std::size_t k = 0; k < nodes_.size(); ++k) beside_crease[k] = nodes_[k].crease;

@@ -76,8 +76,8 @@ namespace detail {
   return out;
 }
 
-/// A piece that nothing holds can move freely: the boundary equation has no single solution. Hollows need not
-/// be held.
+/// A piece without a fixed triangle can move freely, and the boundary equation has no unique solution. The
+/// surface of a hollow needs no fixed triangle.
 inline void require_each_piece_fixed(const MeshData<double>& mesh,
                                      const std::vector<std::uint8_t>& fixed_triangle) {
   std::vector<std::uint32_t> parent(mesh.vertices.size());
@@ -193,8 +193,8 @@ inline void require_each_piece_fixed(const MeshData<double>& mesh,
     if (shift.norm() > limit) shift *= limit / shift.norm();
     for (int s = 0; s < 2; ++s) m.middle[d.triangle[s]][d.corner[s]] = 0.5 * (a + b) + shift;
   }
-  // Loads on a crease are drawn into the node's own part, where the tangent plane is known; no farther than
-  // its triangles.
+  // Loads on a crease are moved into the node's own part, where the tangent plane is known, but no farther
+  // than its triangles reach.
   std::vector<double> room(count, (std::numeric_limits<double>::max)());
   for (std::uint32_t t = 0; t < m.triangles.size(); ++t)
     for (std::size_t c = 0; c < 3; ++c) {
@@ -231,8 +231,8 @@ inline void require_each_piece_fixed(const MeshData<double>& mesh,
 }  // namespace detail
 
 /// Makes the boundary element mesh. `fixed_triangle` marks triangles of the surface's mesh where the object
-/// is held. Reports a fixed region without a triangle, one that is the whole surface, and a piece that is not
-/// held.
+/// is fixed. Reports a fixed region without a triangle, one that is the whole surface, and a piece without a
+/// fixed triangle.
 [[nodiscard]] inline ElementMesh make_element_mesh(const SmoothSurface& surface,
                                                    const std::vector<std::uint8_t>& fixed_triangle,
                                                    const RemeshParams& params = {}) {
@@ -254,9 +254,9 @@ inline void require_each_piece_fixed(const MeshData<double>& mesh,
 }
 
 /// Fraction of the free surface's area, in [0, 1], where the body is thinner than the boundary element mesh's
-/// edges: on triangles whose mean edge is longer than the way from the centre, inward along the normal, to
-/// the other side. There bending comes out too stiff, by half and more, and a contact's answer is not
-/// resolved: ask for more vertices. Next to edges sharper than about 60 degrees a body is always thin.
+/// edges: on triangles whose mean edge is longer than the distance from the centre, inward along the normal,
+/// to the other side. There bending comes out too stiff, by half and more, and the response to a contact is
+/// not resolved: ask for more vertices. Next to edges sharper than about 60 degrees a body is always thin.
 [[nodiscard]] inline double unresolved_area(const ElementMesh& m) {
   using detail::Vec3d;
   const TriangleBvh<double> tree(MeshData<double>{m.vertices, m.triangles});

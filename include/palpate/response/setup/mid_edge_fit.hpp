@@ -8,14 +8,14 @@
 ///
 /// K: second derivatives of u in the tangent plane, from the quadratic that fits u best at the neighbours of
 /// two rings on the same smooth part; mean over the edge's ends and sides. Exact where u is quadratic in a
-/// plane; 0 where it is linear. With linear u alone a bar or plate that bends is 10 to 900 % wrong
+/// plane; 0 where it is linear. With linear u alone the bending of a bar or plate is 10 to 900 % wrong
 /// (docs/accuracy.md). The idea is that of gradient recovery, [zienkiewicz1992].
 ///
-/// Where u is drawn linearly nevertheless, it is raised at the vertices, so that what the bends leave out is
-/// right in the mean:
-///     r_v = sum int phi_v 4 phi_c phi_d b_cd dS / sum int phi_v dS   over the triangles around v, b by K there
-/// Of a quadratic's error over equal triangles a quarter is left where it bends in all directions alike, two
-/// fifths where in one.
+/// Where u is drawn linearly nevertheless, r is added at the vertices, so that the mean of u is right without
+/// mid-edge corrections:
+///     r_v = sum int phi_v 4 phi_c phi_d b_cd dS / sum int phi_v dS
+/// The sums are over the triangles around v, with b by K there. Over equal triangles, a quarter of a
+/// quadratic's error is left where it is curved in all directions alike, two fifths where in one.
 
 #include <palpate/core/cholesky.hpp>
 #include <palpate/response/setup/constants.hpp>
@@ -88,7 +88,7 @@ class MidEdgeFit {
     std::array<double, 5> by;
   };
 
-  // Weighted least squares, 1/d^2, with penalties where the neighbours do not tell.
+  // Weighted least squares, 1/d^2, with penalties where the neighbours do not determine the fit.
   [[nodiscard]] static std::vector<Fit> fit_nodes(const ElementMesh& m) {
     std::vector<std::vector<std::uint32_t>> ring(m.nodes.size());
     for (const auto& t : m.nodes_of)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file The rows of the patch table for loads that pull a patch apart or turn it (moment_loads.hpp). Set-up
-/// only.
+/// @file The rows of the patch table for force dipoles and couples that are spread over a patch
+/// (moment_loads.hpp). Set-up only.
 
 #include <palpate/response/setup/constants.hpp>
 #include <palpate/response/tick/patch_table.hpp>
@@ -74,8 +74,8 @@ template <class See>
 }
 
 /// `sagitta` and `mean_sagitta` of a patch of radius s around node k. Of six positions on the edge of a
-/// quadric's patch one is within 30 degrees of its deepest; the mean bend is known from the node's spacing
-/// on.
+/// quadric's patch one is within 30 degrees of its deepest; the mean sagitta is resolved for radii from the
+/// node's spacing on.
 inline void find_edge(const LoadMesh& load_mesh, std::size_t k, double s, MomentRow& row) {
   const LoadNode& node = load_mesh.nodes()[k];
   const Vec3<double> t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);

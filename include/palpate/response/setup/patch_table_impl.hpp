@@ -53,7 +53,7 @@ inline void add_weight(std::vector<NodeWeight>& list, std::uint32_t node, double
   return out;
 }
 
-// The stuck disc's weight around the node.
+// The bonded flat punch's weight around the node.
 [[nodiscard]] inline std::vector<NodeWeight> patch_around(const LoadMesh& load_mesh, std::size_t k,
                                                           double s) {
   const LoadNode& node = load_mesh.nodes()[k];

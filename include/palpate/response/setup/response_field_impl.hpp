@@ -123,7 +123,7 @@ PALPATE_SETUP_INLINE void ResponseField::build_from(const MeshData<double>& mesh
   report(1);
 }
 
-// Double force, tilts and twist: derivatives of the forces' fields by their position.
+// Force dipole, bending and torsional couples: derivatives of the forces' fields by their position.
 PALPATE_SETUP_INLINE void ResponseField::derive(const detail::LoadPositions& positions, std::size_t k) {
   using Row = Eigen::Map<const Eigen::ArrayXf>;
   const auto size = static_cast<Eigen::Index>(3 * stride_);
@@ -141,7 +141,7 @@ PALPATE_SETUP_INLINE void ResponseField::derive(const detail::LoadPositions& pos
   }
 }
 
-// An edge's node: the mean of its parts' loads.
+// The field of an edge's node is the mean of its parts' fields.
 PALPATE_SETUP_INLINE void ResponseField::join(const detail::LoadPositions& positions, std::size_t k) {
   using Row = Eigen::Map<const Eigen::ArrayXf>;
   const auto size = static_cast<Eigen::Index>(3 * stride_);

@@ -22,8 +22,8 @@
 namespace palpate {
 
 namespace detail {
-/// Way [m] through the inside of a closed mesh from a point of it, at most `most`; `most` where nothing is
-/// met.
+/// Distance [m] through the inside of a closed mesh from a point of it, at most `most`; `most` where nothing
+/// is met.
 [[nodiscard]] inline double way_through(const TriangleBvh<double>& tree, const Vec3d& from,
                                         const Vec3d& inward, double most) noexcept {
   const double skip = setup::ray_start * most;

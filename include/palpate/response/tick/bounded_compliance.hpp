@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Bounds that are kept smoothly: of a compliance from below, so that no force exceeds d / (least
-/// compliance); of what a mesh may not resolve from above. Per tick.
+/// @file Smooth bounds: from below on a compliance, so that no force exceeds d / (least compliance); from
+/// above on what a mesh may not resolve. Per tick.
 
 #include <palpate/core/vector.hpp>
 
@@ -12,9 +12,9 @@
 
 namespace palpate::detail {
 
-/// Makes the eigenvalues lambda of symmetric C (of fixed size: no heap) max(|lambda|, min), min > 0; larger
-/// ones keep their value. Continuous in C. A true eigenvalue is positive: one far below 0 is wrong by at
-/// least its size, so that mode may well be as compliant as that.
+/// Replaces each eigenvalue lambda of symmetric C by max(|lambda|, min), min > 0. C has a fixed size: no
+/// heap. The result is continuous in C. A true compliance is positive, so an eigenvalue far below 0 is wrong
+/// by at least its size, and its mode may well be as compliant as |lambda|.
 ///
 /// Jacobi's rotations until the sum of squares off the diagonal is 1e-18 of that on it. 4 to 6 sweeps were
 /// met; 10 is the limit, for a matrix that is not finite. A rotation is left out where its entry is below
@@ -73,7 +73,7 @@ void bound_below(M& C, double min) noexcept {
 /// and leaves a small one alone. The power 8: within 1 % of 1 up to r = 0.7, of 1/r from r = 1.4 on.
 [[nodiscard]] inline double smooth_limit(double size2, double max2) noexcept {
   const double r2 = size2 / (max2 + (std::numeric_limits<double>::min)()), r8 = r2 * r2 * r2 * r2;
-  // Most are small, and roots take their time: the binomial series, to the last digit below 1e-3.
+  // Most vectors are small and roots are slow: below 1e-3 the binomial series is exact to the last digit.
   if (r8 < 1e-3) return 1 + r8 * (-1. / 8 + r8 * (9. / 128 + r8 * (-51. / 1024 + r8 * (1275. / 32768))));
   return 1 / std::sqrt(std::sqrt(std::sqrt(1 + r8)));
 }

@@ -13,21 +13,22 @@
 
 namespace palpate::detail::tick {
 
-// Compliance of contacts (contact_system.hpp), of the half-space's smaller one.
+// Least compliances of contacts (contact_system.hpp), over the smaller compliance of the half-space.
 inline constexpr double min_compliance = 0.1;           ///< of a mode of one contact
 inline constexpr double min_coupled_compliance = 0.05;  ///< of a mode of several contacts
-/// Of a mode of several contacts, of the sum of all compliances: a tenth of a per mille, to which no mesh
-/// knows it. On a plate that bends easily two contacts would else throw each other out.
+/// The same of a mode of several contacts, over the sum of all compliances, as no mesh resolves a smaller
+/// part. On a plate that bends easily, such a mode is a small difference of large numbers, and the forces of
+/// two contacts would jump.
 inline constexpr double min_resolved_compliance = 1e-4;
 /// tr(S_i K S_j K^T) of a coupling K: at most 3 by energy, as all singular values are below 1.
 inline constexpr double max_coupling = 3;
 
-// Series in depth (linear_loads.hpp, second_order_loads.hpp): a displacement by loads beside the force that
-// is more than half of d, or that asks for more than half of the force, means that the series has ended.
+// Series in depth (linear_loads.hpp, second_order_loads.hpp): the series has ended where the displacement by
+// the loads beside the force exceeds half of d, or takes more than half of the force.
 inline constexpr double max_load_displacement2 = 0.25;  ///< (1/2)^2 of d^2
 inline constexpr double max_load_force2 = 0.25;         ///< (1/2)^2 of P^2
-/// Part of a compliance that a bonded patch's dipole and couples may take, squared: a half. In theory less
-/// than all of it.
+/// Square of the part of a compliance that a bonded patch's dipole and couples may take: a half. In theory
+/// they take less than all of it.
 inline constexpr double max_bonded_part2 = 0.25;
 inline constexpr double max_depth = 2;  ///< d_n / a and beta: the deepest reference
 /// The radial dipole and the near terms take up to this many half-space's forces for d; the universal forces
@@ -39,25 +40,25 @@ inline constexpr double max_force_ratio = 2;
 inline constexpr double min_curvature = -0.5, max_curvature = 1;
 
 // Wide patches (patch_moments.hpp), by a over the length of the boundary element mesh's edges.
-inline constexpr double narrow_patch = 1;             ///< below it the slopes of w say all
+inline constexpr double narrow_patch = 1;             ///< below it the slopes of w suffice
 inline constexpr double wide_patch = 1.5;             ///< from it on five loads bond the patch
 inline constexpr double min_moment_compliance = 0.1;  ///< eigenvalue of D, of the half-space's
 
 // Several contacts (ContactSystem): a contact that comes in where others have moved the surface by u.
-/// Part of d that is left, 1 - u.d/d^2, from which on the contact is wholly active: a quarter.
+/// The contact is wholly active where the part of d that is left, 1 - u.d/d^2, is at least this.
 inline constexpr double active_from = 0.25;
 /// A contact is inactive while d is small against u: (1/10)^2 of u^2 is compared with d^2.
 inline constexpr double moved_share2 = 0.01;
 
 // Distance from the surface (placement.hpp).
-/// A weight of a patch's node that counts: below it the node is left out.
+/// A patch's node is left out where its weight is below this.
 inline constexpr double min_node_weight = 1e-12;
-/// Depth below a disc that stands for a mean over a patch, which has no edge: a twentieth of its radius
-/// [radii]. Without it a contact at the other's edge meets an infinite slope.
+/// Depth at which the field of a disc is taken that stands for a mean over a patch [radii]. A disc's own
+/// field has an infinite slope at its edge, a mean over a patch has not.
 inline constexpr double mean_disc_depth = 0.05;
 
-// Near field (near_field.hpp). Powers of a/r with which what moved the patch is taken back outside it: falls
-// to 1 % at two radii, so nothing far away changes. Chosen on the half-space.
+// Near field (near_field.hpp). Outside a patch, the patch's own displacement of second order is subtracted
+// with powers of a/r. They fall to 1 % at two radii, so nothing changes far away. Chosen on the half-space.
 //   a push: s^-8; a slope: s^-7 times r/a
 inline constexpr float min_distance2 = 1e-12f;  ///< r^2 / a^2: keeps a/r finite on the axis
 /// A sphere's dipole is drawn with the factor (1 - s^-6) / (1 + 0.9 s^-2 + 0.7 s^-4), chosen with its other
@@ -84,13 +85,13 @@ inline constexpr float patch_edge =
 
 // Sphere (pressed_sphere.hpp, sphere_contact.hpp).
 inline constexpr double max_contact_radius = 0.95;      ///< a / R
-inline constexpr double max_body_share = 0.5;           ///< of d_H, by which a stiff layer raises it
+inline constexpr double max_body_share = 0.5;           ///< of d_H: the part that a stiff layer may add
 inline constexpr double min_relative_curvature = 1e-3;  ///< of 1 / R_s: a hollow that fits is a plane to it
 inline constexpr double max_lean2 = 0.0625;             ///< (1/4)^2: force across, of the normal force
 inline constexpr double max_lean_feedback2 = 0.25;  ///< (1/2)^2: norm of what that force does to w_t and s
 inline constexpr double max_center_shift2 = 0.25;   ///< (1/2)^2 of a^2
 inline constexpr double max_lift2 = 0.01;           ///< (1/10)^2 of d^2
 inline constexpr double max_stiffening = 0.25;      ///< of the half-space's compliance
-inline constexpr int sphere_passes = 3;             ///< what the quantities ask of each other is small
+inline constexpr int sphere_passes = 3;  ///< they suffice: the quantities depend weakly on each other
 
 }  // namespace palpate::detail::tick

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file What one contact does to the patch of another: mean displacements by unit forces and by unit loads.
-/// Per tick.
+/// @file Coupling of two contacts: mean displacements of one's patch by the other's unit forces and unit
+/// loads. Per tick.
 ///
 ///     K_ij = u_near(x_i - x_j; disc of radius sqrt(a_i^2 + a_j^2)) + sum_kl g_ik g_jl w_kl
 ///
@@ -22,8 +22,8 @@ namespace palpate::detail {
   return {dipole, couple.dot(t1), couple.dot(n.cross(t1))};
 }
 
-/// The disc of radius a that stands for a mean over a patch, seen at r from contact j, p along it. Such a
-/// mean has no edge at a, where a disc's own field has an infinite slope: it is taken a twentieth of a
+/// The disc of radius a that stands for a mean over a patch, seen at r from contact j, p along it. A disc's
+/// own field has an infinite slope at its edge, such a mean has not: the disc is taken a twentieth of a
 /// deeper.
 [[nodiscard]] inline Disc<double> mean_disc(const PlacedContact& cj, const Vec3<double>& r,
                                             const Vec3<double>& p, double a) noexcept {
@@ -61,8 +61,8 @@ namespace palpate::detail {
   return out;
 }
 /// Mean displacement of patch i by contact j's unit loads: radial dipole, bending couples along its t1 and t2
-/// [1/m^2]. Its transpose is what unit forces on patch i do beneath patch j: spread, slopes along t1 and t2
-/// (reciprocity).
+/// [1/m^2]. By reciprocity its transpose is the spread and the slopes along t1 and t2 beneath patch j by unit
+/// forces on patch i.
 [[nodiscard]] inline Mat3<double> coupling_of_moments(const ResponseField& field, const PlacedContact& ci,
                                                       const PlacedContact& cj) noexcept {
   const double nu = field.nu(), a = std::hypot(ci.tool.a, cj.tool.a),

@@ -60,8 +60,8 @@ class ContactSystem {
     construct(placed_[c], [&] { return place_contact(*field_, tool); });
   }
 
-  /// All further stages of the first `count` contacts, all placed: first by the forces alone; they give the
-  /// loads beside them, and those the forces again.
+  /// All further stages of the first `count` contacts, all placed. The forces alone come first; they give the
+  /// loads beside the force; with these the forces are solved again.
   void solve(std::size_t count) noexcept {
     std::array<double, Capacity> activation, wide;
     for (std::size_t i = 0; i < count; ++i) activation[i] = 1, wide[i] = placed_[i].wide;
@@ -100,9 +100,10 @@ class ContactSystem {
   /// Force that the tool exerts in contact c / mu.
   [[nodiscard]] Vec3<double> force(std::size_t c) const noexcept { return solved_[c].P + second_[c].extra; }
 
-  /// Torque of the tool on patch i of `count` about its middle where it has moved to, / mu: the felt bending
-  /// couple, and the couple that keeps the patch from rotating about m with w, of which the field knows
-  /// nothing. That takes less than all of a compliance: at most half where a patch is wide for a thin part.
+  /// Torque of the tool on patch i of `count`, about the patch's moved middle, / mu: the felt bending couple,
+  /// and the couple that keeps the patch from rotating about m with w. The field leaves out the latter. In
+  /// theory it takes less than all of a compliance; it is bounded by half of one, for patches that are wide
+  /// for a thin part.
   [[nodiscard]] Vec3<double> torque(std::size_t i, std::size_t count) const noexcept {
     const PlacedContact& c = placed_[i];
     const double stiffness = torsional_stiffness(*field_, c, bonded_[i].activation);
@@ -131,9 +132,9 @@ class ContactSystem {
                              : second_[i].felt_couple;
   }
 
-  // What contacts do to each other. By energy at most their own compliances: with K = L_i N L_j^T, C = L L^T,
-  // all singular values of N are below 1, so |N|^2 = tr(S_i K S_j K^T) < 3. A K that is t times too large is
-  // wrong by as much, for the mesh does not resolve it, and counts as 1/t of it.
+  // Couplings between contacts. By energy their own compliances bound them: with K = L_i N L_j^T, C = L L^T,
+  // all singular values of N are below 1, so |N|^2 = tr(S_i K S_j K^T) < 3. Where the trace exceeds 3 the
+  // mesh does not resolve K, and K is multiplied by 3 over the trace.
   void couple(std::size_t count) noexcept {
     for (std::size_t i = 0; i < count; ++i)
       for (std::size_t j = 0; j < i; ++j) {
@@ -147,11 +148,11 @@ class ContactSystem {
       }
   }
 
-  // Activation of contacts. One comes in with d = 0 where deeper ones have moved the surface by u: bonded
-  // there it would pull. So it is active by what it has left to do, 1 - u.d/d^2, wholly from a quarter on;
-  // and not while d is small against u, wherever that points. Deeper ones count, wholly from twice the depth
-  // on: of two alike neither releases the other. As it comes in, the moments of the others' patches are
-  // released (PatchMoments).
+  // Activation of contacts. A contact comes in with d = 0 where deeper contacts may have moved the surface by
+  // u; bonded there it would pull. So its activation grows with what is left of d, 1 - u.d/d^2, to 1 at a
+  // quarter. It is 0 while d is small against u, whatever the direction of u. Only deeper contacts count,
+  // wholly from twice the depth on, so that two equal contacts do not release each other. As a contact comes
+  // in, the moments of the others' patches are released (PatchMoments).
   void activate(std::size_t count, std::array<double, Capacity>& activation,
                 std::array<double, Capacity>& wide) noexcept {
     constexpr double tiny = (std::numeric_limits<double>::min)();
@@ -173,8 +174,9 @@ class ContactSystem {
         if (i != j) wide[i] *= 1 - activation[j];
   }
 
-  // d of contact i less what the rotation of the tools moves its patch: its own, and the others' torsion,
-  // which they feel at once; their couples come with the other loads.
+  // d of contact i less the displacement of its patch by rotated tools: by its own, and by the others'
+  // torsional couples, which do not depend on the forces. The others' bending couples come with the loads
+  // beside the force.
   [[nodiscard]] Vec3<double> linear_rhs(std::size_t i, std::size_t count) const noexcept {
     Vec3<double> rhs = placed_[i].tool.d;
     for (std::size_t j = 0; j < count; ++j) {
@@ -222,7 +224,7 @@ class ContactSystem {
             moments.bonding(placed_[i].tool.slope(), solved_[i].P, second_[i].dipole, second_[i].couple);
     }
   }
-  // What the force of contact i has left to move: less the others' dipoles and couples.
+  // The displacement that is left for the force of contact i: less that by the others' dipoles and couples.
   [[nodiscard]] Vec3<double> second_rhs(std::size_t i, std::size_t count) noexcept {
     Vec3<double> rhs = second_[i].rhs;
     if constexpr (Capacity > 1)
@@ -240,7 +242,7 @@ class ContactSystem {
     return rhs;
   }
 
-  // C P = rhs(i) to P(i).
+  // Solves C P = rhs; rhs(i) and P(i) are those of contact i.
   template <class Rhs, class Force>
   void solve_forces(std::size_t count, const Rhs& rhs, const Force& P) noexcept {
     if constexpr (Capacity > 1)

@@ -4,9 +4,9 @@
 /// @file From the vertices of the boundary element mesh to those of a display, under solved contacts. Per
 /// tick.
 ///
-/// The field is quadratic over the mesh's triangles within 2.5 edges of a contact, elsewhere linear between
-/// raised vertices (mid_edge_correction.hpp); within one edge of a patch the contact's own near field is
-/// taken at the vertex itself instead of its interpolant.
+/// The field is quadratic over the mesh's triangles within 2.5 edges of a contact. Elsewhere it is linear,
+/// with the mean of the mid-edge corrections added at the vertices (mid_edge_correction.hpp). Within one edge
+/// of a patch the contact's own near field is evaluated at the display's vertex itself, not interpolated.
 
 #include <palpate/response/response_display.hpp>
 #include <palpate/response/tick/mid_edge_correction.hpp>
@@ -48,8 +48,8 @@ class ResponseDrawing {
                        static_cast<float>(tick::max_vertex_correction * std::sqrt(d2)), raised_.data());
   }
 
-  /// emit(slot, u) with a lane of displacements from that slot on, until all of a display have theirs. An
-  /// `emit` that can be assigned is copied and put back.
+  /// Calls emit(slot, u) with a SIMD vector of displacements from that slot on, until all of a display have
+  /// theirs. An `emit` that can be assigned is copied and put back.
   template <class Emit>
   void each(const ResponseDisplay& display, const DrawnContacts& contacts, Emit& emit) noexcept {
     find_close(display, contacts);
@@ -74,7 +74,7 @@ class ResponseDrawing {
     const S rx = x - k.x.x(), ry = y - k.x.y(), rz = z - k.x.z(), most = radius + (k.a + reach());
     return most * most - (rx * rx + ry * ry + rz * rz);
   }
-  // Which spans have vertices within reach of a contact, or may have.
+  // Marks the spans that may have vertices within reach of a contact.
   void find_close(const ResponseDisplay& display, const DrawnContacts& contacts) noexcept {
     const ResponseDisplay::Spheres& around = display.around();
     for (std::size_t i = 0; i < around.radius.size(); i += Simd4::size()) {
@@ -140,7 +140,7 @@ class ResponseDrawing {
   template <class Emit>
   void spread(const ResponseDisplay& display, Emit& emit) const noexcept {
     using Out = std::conditional_t<std::is_copy_assignable_v<Emit>, Emit, Emit&>;
-    Out out = emit;  // a copy is in registers: what it writes might be any of it otherwise
+    Out out = emit;  // a copy stays in registers: else each write might change it
     const float *const weight1 = display.b1(), *const weight2 = display.b2();
     const std::span<const ResponseDisplay::Span> spans(display.spans());
     for (std::size_t s = 0; s < spans.size(); ++s) {
@@ -150,7 +150,7 @@ class ResponseDrawing {
       if (total.corrected) {
         for (std::uint32_t i = span.begin; i < span.end; i += four)
           out(i, total(Simd4(weight1 + i), Simd4(weight2 + i)));
-      } else {  // most: a loop without the question
+      } else {  // most spans: a loop without the test
         for (std::uint32_t i = span.begin; i < span.end; i += four)
           out(i, total.linear(Simd4(weight1 + i), Simd4(weight2 + i)));
       }
@@ -158,7 +158,8 @@ class ResponseDrawing {
     if constexpr (std::is_copy_assignable_v<Emit>) emit = out;
   }
 
-  // One that is: the same with the near fields exact, fading to their interpolants at the end of their reach.
+  // A span that is close to a contact: the same with the near fields exact, fading to their interpolants at
+  // the end of their reach.
   template <class Emit>
   void refine(const ResponseDisplay& display, std::size_t s, const DrawnContacts& contacts,
               Emit& emit) const noexcept {
@@ -189,7 +190,7 @@ class ResponseDrawing {
       }
     }
   };
-  // A register of slots from i on.
+  // One SIMD vector of slots from i on.
   template <class V, class Emit>
   PALPATE_INLINE void refine_at(const ResponseDisplay& display, std::uint32_t i, const Refined& span,
                                 const DrawnContacts& contacts, Emit& emit) const noexcept {
@@ -256,7 +257,7 @@ class ResponseDrawing {
 
   const ResponseField* field_;
   std::vector<float> total_;   // the field at the mesh's vertices, four numbers each
-  std::vector<float> raised_;  // the same, raised where mid-edge corrections are left out
+  std::vector<float> raised_;  // the same, with the mean of the mid-edge corrections where they are left out
   std::vector<float> close_;   // by span of the display: above 0 within reach of a contact
   MidEdgeCorrection<Capacity> corrections_;
 };

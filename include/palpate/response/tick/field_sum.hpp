@@ -5,13 +5,13 @@
 ///
 ///     u = f (sum_c [sum_k (g_k P + A q_k) . w_k + share sum_k (other loads) . w_k + u_near,c] + q)
 ///
-/// | symbol | name                                                                              |
-/// |--------|-----------------------------------------------------------------------------------|
-/// | w_k    | influence functions of load mesh's node k: regular part of unit loads there       |
-/// | g_k, q_k | node k's part of the contact's force, of its moments (placement.hpp)            |
-/// | A      | tensor of the loads that bond a wide patch (patch_moments.hpp)                    |
-/// | u_near | near field of the contact (near_field.hpp); q: rotation_correction.hpp            |
-/// | share, f | bounds of what the mesh does not resolve (constants.hpp)                        |
+/// | symbol   | name                                                                        |
+/// |----------|-----------------------------------------------------------------------------|
+/// | w_k      | influence functions of load mesh's node k: regular part of unit loads there |
+/// | g_k, q_k | node k's part of the contact's force, of its moments (placement.hpp)        |
+/// | A        | tensor of the loads that bond a wide patch (patch_moments.hpp)              |
+/// | u_near   | near field of the contact (near_field.hpp); q: rotation_correction.hpp      |
+/// | share, f | bounds of what the mesh does not resolve (constants.hpp)                    |
 
 #include <palpate/response/tick/contact_system.hpp>
 #include <palpate/response/tick/drawing.hpp>
@@ -94,8 +94,8 @@ class FieldSum {
     for (auto node : patch_) weight_[node] = 0;
     return carried;
   }
-  // Influence functions of the loads beside the force. Where the mesh does not resolve them they can be of
-  // any size: at most about 2 d.
+  // Influence functions of the loads beside the force. Where the mesh does not resolve them they can have any
+  // size, so they are bounded by about 2 d.
   void add_loads(const ContactSystem<Capacity>& contacts, std::size_t c) noexcept {
     const PlacedContact& placed = contacts.placed(c);
     const SecondOrderContact& loads = contacts.second(c);
@@ -129,7 +129,7 @@ class FieldSum {
     all(total_) += Row(own, static_cast<Eigen::Index>(total_.size()));
   }
 
-  // The rotation correction, as far as the contacts keep second order; at most 2 d.
+  // The rotation correction, times the contacts' share of second order; bounded by 2 d.
   void add_rotation(const ContactSystem<Capacity>& contacts) noexcept {
     double share = 1;
     for (std::size_t c = 0; c < count_; ++c)
@@ -140,7 +140,7 @@ class FieldSum {
     share *= smooth_limit(double(largest), tick::max_rotation_field2 * contacts.max_displacement2(count_));
     all(total_) += static_cast<float>(share) * all(second_);
   }
-  // A field beyond 4 d is one that the mesh does not resolve. It is drawn smaller: never a spike.
+  // A field beyond 4 d is one that the mesh does not resolve. It is scaled down, so that no spike is drawn.
   void limit(const ContactSystem<Capacity>& contacts) noexcept {
     const auto share =
         static_cast<float>(smooth_limit(max2(total_), tick::max_field2 * contacts.max_displacement2(count_)));

@@ -5,9 +5,9 @@
 /// to it. Per tick.
 ///
 /// A bonded patch neither spreads nor bends. For nu < 1/2 a flat punch under a force would do both; a force
-/// dipole and a bending couple prevent it, in the mean that the loads' energy knows. And where the regular
+/// dipole and a bending couple prevent it, in the mean that the loads' energy contains. Where the regular
 /// part w spreads and bends the surface beneath the patch, the half-space's loads for that spread and slope
-/// prevent it, as far as PatchMoments does not: for a narrow patch the moments of w are w's slopes.
+/// prevent it, as far as PatchMoments does not: the moments of w over a narrow patch are the slopes of w.
 
 #include <palpate/response/tick/placement.hpp>
 
@@ -19,7 +19,7 @@ namespace palpate::detail {
   return a * (1 - 2 * nu) / (std::numbers::pi * (1 - nu));
 }
 
-/// Share that counts of a displacement of length `size` by loads beside the force: the series in depth ends
+/// Factor that bounds a displacement of length `size` by loads beside the force: the series in depth ends
 /// where it is half of d. `displacement2`: Indenter::displacement2.
 [[nodiscard]] inline double series_share(double size, double displacement2) noexcept {
   return smooth_limit(size * size, tick::max_load_displacement2 * displacement2);
@@ -76,9 +76,9 @@ struct MovedByLoads {
 ///
 ///     16 a^3 / (3 (1 + 9 H a / (4 pi)))
 ///
-/// H: mean curvature, from the mean depth H a^2 / 2 of the patch's edge. A bent surface has less material
-/// around the patch to shear; the factor is its first order (docs/response_field.md). Times the contact's
-/// activation.
+/// H: mean curvature, from the mean depth H a^2 / 2 of the patch's edge. On a convex surface there is less
+/// material around the patch to shear; the factor is the first order of that (docs/response_field.md). Times
+/// the contact's activation.
 [[nodiscard]] inline double torsional_stiffness(const ResponseField& field, const PlacedContact& c,
                                                 double activation) noexcept {
   const double a = c.tool.a,
@@ -134,8 +134,8 @@ struct MovedByLoads {
   return out;
 }
 
-/// The contact's force as the loads beside it take it: at most that of the half-space for d. Where the body
-/// is far stiffer than a half-space, they have nothing to say.
+/// The contact's force in the formulas of the loads beside it: at most that of the half-space for d. For a
+/// body that is far stiffer than a half-space the formulas do not hold.
 struct IndentingForce {
   FlatPunchCompliance near;
   double whole;             ///< normal part of the contact's force [m^2]
@@ -162,10 +162,10 @@ struct LinearLoads {
   Vec3<double> slope;   ///< of w beneath the patch, by all forces
   double dipole;        ///< radial force dipole [m^3]
   Vec3<double> couple;  ///< bending couple, the tool's included [m^3]
-  Vec3<double> rhs;     ///< what the force has left to move [m]
+  Vec3<double> rhs;     ///< displacement that is left for the force [m]
 };
 
-/// Dipole and couple that keep the patch as it is:
+/// Dipole and couple that keep the patch from spreading and bending:
 ///
 ///     dipole = D_b P_n - 2 k (radial . P + spread),   couple = -D_b P_t / 2 - k (slope of w) + the tool's
 ///

@@ -27,7 +27,7 @@ struct LoadNode {
   Vec3<double> source;                      ///< the position [m]
   double size = 0;                          ///< mean length of the boundary element mesh's edges around [m]
   double spacing = 0;                       ///< mean distance to the nodes around [m]
-  std::uint32_t triangle = 0;               ///< of the boundary element mesh, that holds the position
+  std::uint32_t triangle = 0;               ///< of the boundary element mesh, that contains the position
   Vec3<float> part = Vec3<float>::UnitX();  ///< weights of its corners
   bool crease = false;                      ///< on a crease, or drawn inwards from one
 };
@@ -35,14 +35,14 @@ struct LoadNode {
 /// The whole surface of the boundary element mesh, fixed region included: closed, so that the position of a
 /// point of the surface never jumps, at a rim or across a thin part. Its nodes, in this order:
 ///
-/// | nodes  | where                                              | field of a load                           |
-/// |--------|----------------------------------------------------|-------------------------------------------|
-/// | solved | element nodes with a free triangle; edges' middles | boundary equation                         |
-/// | fixed  | the other nodes                                    | none: w = -u_near                         |
-/// | edge   | element vertices where smooth parts meet           | mean of the loads of the nodes that meet  |
+/// | nodes  | where                                              | field of a load                          |
+/// |--------|----------------------------------------------------|------------------------------------------|
+/// | solved | element nodes with a free triangle; edges' middles | boundary equation                        |
+/// | fixed  | the other nodes                                    | none: w = -u_near                        |
+/// | edge   | element vertices where smooth parts meet           | mean of the loads of the nodes that meet |
 ///
 /// Only solved nodes have influence functions; the others' loads are shared among them (`shares`), and what
-/// is left falls on what is held and moves nothing. At most three parts of an edge node count.
+/// is left acts on the fixed region and moves nothing. At most three parts of an edge node count.
 ///
 /// The loads of a crease's nodes lie inside their own parts; a contact that crosses a crease goes over
 /// gradually from one part's nodes to the edge's and on to the other part's.
@@ -84,7 +84,8 @@ class LoadMesh {
 
   /// The position x = sum weight (source + d normal) with d the distance along the interpolated normal; the
   /// nearest position where there is none close by. The nearest position of a point over a reflex edge jumps,
-  /// this one does not. Where the search starts depends on x alone, so the answer has no memory.
+  /// this one does not. The start of the search depends on x alone, so the result does not depend on earlier
+  /// calls.
   [[nodiscard]] LoadPosition locate(const Vec3<double>& x) const noexcept {
     const auto at = bvh_->closest(x, start_[cell(x)]);
     LoadPosition position{at.triangle, triangles_[at.triangle], at.weight, at.distance2};
@@ -96,7 +97,7 @@ class LoadMesh {
   static constexpr int cells = 16;  // along each axis
 
   // From the nearest position over the triangles' prisms, which share their sides. Leaves `position` alone if
-  // none holds x.
+  // none contains x.
   void follow_normals(const Vec3<double>& x, const Vec3<double>& nearest,
                       LoadPosition& position) const noexcept {
     std::uint32_t t = position.triangle;
@@ -116,13 +117,14 @@ class LoadMesh {
         area = eq.cross(er);
       };
       raise();
-      for (int newton = 0; newton < 4; ++newton) {  // x in the plane of the raised triangle
+      for (int newton = 0; newton < 4; ++newton) {  // d for which the offset triangle's plane contains x
         const double slope = (dq.cross(er) + eq.cross(dr)).dot(to) - area.dot(p.normal),
                      height = area.dot(to);
         if (!(slope < 0)) return;
         d -= height / slope;
         raise();
-        if (height * height < 1e-10 * slope * slope * eq.squaredNorm()) break;  // what is left: its square
+        // Newton's method leaves an error of the square of its last step.
+        if (height * height < 1e-10 * slope * slope * eq.squaredNorm()) break;
       }
       const double a2 = area.squaredNorm();
       if (!(a2 > 0)) return;

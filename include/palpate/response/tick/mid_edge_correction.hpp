@@ -6,7 +6,7 @@
 /// Over a triangle with corners' weights b_0, b_1, b_2 a field is drawn as sum b_c u_c + 4 sum b_c b_{c+1}
 /// e_c, e_c the mid-edge correction of edge c (mid_edge_table.hpp). It is largest for the regular part next
 /// to an edge of the body, where linear display makes half of the error of first order. Far away the
-/// corrections are left out and u_c is raised instead.
+/// corrections are left out, and their mean is added to u_c instead.
 
 #include <palpate/response/tick/mid_edge_table.hpp>
 #include <palpate/response/tick/stages.hpp>
@@ -53,9 +53,9 @@ class MidEdgeCorrection {
       correct_near(contacts[c].near, own + 3 * stride * c, stride, own_[c]);
     }
   }
-  /// Raises `field`, at the vertices, four numbers each, as far as the corrections of its edges are left out.
-  /// `vertices`: coordinates. By `max` / 2 at most, smoothly, r max^2 / (max^2 + r^2): more is what the mesh
-  /// does not resolve.
+  /// Adds to `field`, at the vertices, four numbers each, the mean r of the corrections, as far as those of
+  /// the edges are left out. `vertices`: coordinates. What is added is r max^2 / (max^2 + r^2), at most `max`
+  /// / 2: the mesh does not resolve more.
   void raise(const std::array<const float*, 3>& vertices, const float* field,
              std::span<const DrawnContact> contacts, float reach, float max, float* raised) const noexcept {
     const MidEdgeTable::Rows& rows = table_->vertex_rows();
@@ -175,7 +175,7 @@ class MidEdgeCorrection {
       }
     }
   }
-  // Four sums: one alone would wait for each of some 25 additions.
+  // Four partial sums: with one, each of some 25 additions would wait for the one before.
   [[nodiscard]] static PALPATE_INLINE Simd4 sum(std::span<const MidEdgeTable::Weight> weights,
                                                 const float* field) noexcept {
     const auto part = [&](std::size_t i) { return weights[i].weight * Simd4(field + 4 * weights[i].vertex); };

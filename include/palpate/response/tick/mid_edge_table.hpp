@@ -4,7 +4,7 @@
 /// @file Corrections that make a linear field over a mesh quadratic: at the middles of edges, and at vertices
 /// in the mean. Made at set-up.
 
-#include <palpate/core/detail/simd_shuffle.hpp>
+#include <palpate/core/simd_shuffle.hpp>
 #include <palpate/response/setup/mid_edge_fit.hpp>
 
 #include <span>
@@ -13,7 +13,7 @@ namespace palpate {
 
 /// Corrections of a linear field, from the boundary element mesh alone: by edge, weights with b = sum weight
 /// u(vertex), how far u at the edge's middle lies from the mean of its ends (none where both ends are fixed);
-/// by vertex, weights with r = sum weight u(vertex), by which a linear field is raised there so that it is
+/// by vertex, weights with r = sum weight u(vertex), the displacement to add there so that a linear field is
 /// right in the mean (none where the vertex is fixed). Derivation: mid_edge_fit.hpp.
 class MidEdgeTable {
  public:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Loads that pull a patch apart or turn it, and what the body's correction answers; for the patch
-/// table.
+/// @file Force dipoles and couples that are spread over a patch, and the regular part of their fields; for
+/// the patch table.
 ///
 /// | number | load of unit moment on the flat punch's weight, p from its centre         | tensor A |
 /// |--------|---------------------------------------------------------------------------|----------|
@@ -10,7 +10,7 @@
 /// | 1, 2   | shear dipoles s = t1 t1 - t2 t2, t1 t2 + t2 t1, moment sum f p^T = s / 2  | s        |
 /// | 3, 4   | bending couples along t1, t2, m the inward normal, sum p (f.m) = t        | 2 m t^T  |
 /// t1 = perpendicular(normal), t2 = normal x t1. A node of weight g at p has the force A q, q = g p / sum g
-/// p^2, less where part of the patch is held: none from half on.
+/// p^2, less where part of the patch is fixed: none from half on.
 
 #include <palpate/response/setup/constants.hpp>
 #include <palpate/response/tick/load_mesh.hpp>

@@ -8,7 +8,7 @@
 namespace palpate::detail {
 
 /// e of the near term k_r asin(1/s) / (s sqrt(s^2 - 1 + e^2)), such that at the patch's edge, where the
-/// dipole's disc moves -dipole (2 - 2 nu) 3 / (32 a^2), the term takes that back: e = k_r pi / 2 over that
+/// dipole's disc moves -dipole (2 - 2 nu) 3 / (32 a^2), the term cancels that: e = k_r pi / 2 over that
 /// displacement by d_n delta_n / a.
 [[nodiscard]] inline double near_term_pole(double radial, double a, double nu) noexcept {
   const double per_depth = 1 / (a * flat_punch_compliance(a, nu).normal),

@@ -4,7 +4,7 @@
 /// @file The near field of one solved contact: the half-space's displacement at any point of the surface,
 /// several points at a time. Per tick.
 ///
-/// The surface near a contact is bent, the disc is flat. The disc is taken at the depth z of its own edge
+/// The surface near a contact is curved, the disc is flat. The disc is taken at the depth z of its own edge
 /// below the tangent plane: for a quadric z (a/r)^2, so depth = z (1 - (a/r)^2), which vanishes at the edge.
 /// The edge is at most `sagitta` deep: the side of a block is below its top by all of z.
 ///
@@ -13,8 +13,8 @@
 ///     q_n = (d_n delta_n/a) sqrt(1 - s^-2) (n_4 s^-4 + n_6 s^-6)
 ///     q_t = beta^2 (delta_t . e_p) t sqrt(1 - s^-2) s^-3
 /// r_4 to n_6 and t are linear in beta (DepthFactor). e is such that all terms add up to nothing at the
-/// patch's edge and within it. What moved the patch itself (push, slope of the couple of second order) is
-/// taken back outside.
+/// patch's edge and within it. The patch's own displacement of second order (push, slope of the couple) is
+/// subtracted again outside it.
 ///
 /// A frictionless sphere: Hertz's field and a force dipole, of which outside the contact (1 - s^-6) is drawn,
 /// over 1 + 0.9 s^-2 + 0.7 s^-4 (constants.hpp); within the contact (1 - (r/a)^2) r `radial` along the

@@ -11,17 +11,18 @@
 ///
 ///     y = D^-1 (slope of the tool - G P - W M),   D = D_near + W,   C -> C - G^T D^-1 G
 ///
-/// | symbol | name                                                                       | unit         |
-/// |--------|----------------------------------------------------------------------------|--------------|
-/// | P, M   | force / mu; loads that the contact has anyway (SecondOrderContact) / mu    | m^2, m^3     |
-/// | G, W   | moments of w over the patch by unit forces and by unit moments, times mu   | 1/m^2, 1/m^3 |
-/// | D_near | the half-space's: 3 (1-nu)/(16 a^3), 3 (2-nu)/(32 a^3), 3 (1-nu)/(8 a^3)   | 1/m^3        |
+/// | symbol | name                                                                     | unit         |
+/// |--------|--------------------------------------------------------------------------|--------------|
+/// | P, M   | force / mu; loads that the contact has anyway (SecondOrderContact) / mu  | m^2, m^3     |
+/// | G, W   | moments of w over the patch by unit forces and by unit moments, times mu | 1/m^2, 1/m^3 |
+/// | D_near | the half-space's: 3 (1-nu)/(16 a^3), 3 (2-nu)/(32 a^3), 3 (1-nu)/(8 a^3) | 1/m^3        |
 ///
-/// A patch of less than an edge of the boundary element mesh has none of it, one of one and a half edges all
-/// of it, in between a share; the rest is prevented by the slopes of w (linear_loads.hpp). The more of a
-/// patch lies on the fixed region the less: from half on none. Only of a contact alone, and less as others
-/// come in (ContactSystem::activate): of what several do to each other's moments only the slopes are known.
-/// Nothing is fitted. docs/response_field.md, "Bonded patches".
+/// A patch narrower than an edge of the boundary element mesh has none of these loads, a patch of one and a
+/// half edges has all of them, in between a share. The loads for the slopes of w replace the rest
+/// (linear_loads.hpp). The share falls with the part of the patch that lies on the fixed region, to 0 at
+/// half. A contact alone has its share in full; it falls as others come in (ContactSystem::activate), because
+/// of what several contacts do to each other's moments only the slopes are known. Nothing is fitted.
+/// docs/response_field.md, "Bonded patches".
 
 #include <palpate/core/cholesky.hpp>
 #include <palpate/response/response_field.hpp>

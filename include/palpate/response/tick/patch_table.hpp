@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  How far the body's correction w lets a contact give way: means over patches of any size, tabulated.
+/// @file  Compliance of the regular part w: means of w over patches of any size, tabulated.
 
 #include <palpate/response/tick/load_mesh.hpp>
 #include <palpate/response/tick/mid_edge_table.hpp>
@@ -11,11 +11,11 @@
 
 namespace palpate {
 
-/// Where the fields of unit loads at the nodes of a load mesh lie: x of every vertex of the boundary element
-/// mesh, y and z `stride` further each, mu = 1.
+/// Layout of the influence functions, the fields of unit loads at the nodes of a load mesh: x of every vertex
+/// of the boundary element mesh, y and z `stride` further each, mu = 1.
 struct InfluenceFunctions {
-  /// Loads per node: unit forces along x, y, z; unit radial double force; unit tilts along the node's two
-  /// tangents; unit twist about its inward normal.
+  /// Loads per node: unit forces along x, y, z; unit radial force dipole; unit bending couples along the
+  /// node's two tangents; unit torsional couple about its inward normal.
   static constexpr std::size_t loads = 7;
   const float* values = nullptr;
   std::size_t stride = 0;
@@ -43,7 +43,7 @@ struct NodeWeight {
 /// | symbol | name                                                              | unit |
 /// |--------|-------------------------------------------------------------------|------|
 /// | s      | radius over which the table averages: s^2 = a^2 - (spacing / 2)^2 | m    |
-/// | a      | radius of the patch; spacing: LoadNode's                         | m    |
+/// | a      | radius of the patch; spacing: LoadNode's                          | m    |
 class PatchTable {
  public:
   struct Own {
@@ -51,8 +51,8 @@ class PatchTable {
     float pair[6][6];
   };
   struct Second {
-    /// Of the unit radial force dipole, of the unit bending couples along the node's two tangents, of the unit
-    /// torsional couple [1/m^2].
+    /// Of the unit radial force dipole, of the unit bending couples along the node's two tangents, of the
+    /// unit torsional couple [1/m^2].
     float mean[12];
   };
   using Moments = MomentRow;
@@ -74,7 +74,7 @@ class PatchTable {
   PatchTable(const ElementMesh& mesh, const MidEdgeTable& bends, const LoadMesh& load_mesh, unsigned threads,
              const InfluenceFunctions& influence);
 
-  /// Where s^2 stands in the table.
+  /// Position of s^2 in the table.
   struct Level {
     std::size_t below;
     double part;
@@ -102,13 +102,13 @@ class PatchTable {
     out << w[0], w[3], w[5], w[3], w[1], w[4], w[5], w[4], w[2];
     return out;
   }
-  /// Q of node k, by column: its double force, its two tilts.
+  /// Q of node k, by column: of its force dipole, of its two bending couples.
   [[nodiscard]] Mat3<double> second(std::size_t k, const Level& at) const noexcept {
     using Nine = Eigen::Map<const Eigen::Matrix3f>;
     const Nine low(second_[k * levels_ + at.below].mean), high(second_[k * levels_ + at.below + 1].mean);
     return (1 - at.part) * low.cast<double>() + at.part * high.cast<double>();
   }
-  /// Of its twist.
+  /// Of its torsional couple.
   [[nodiscard]] Vec3<double> second_by_twist(std::size_t k, const Level& at) const noexcept {
     using Three = Eigen::Map<const Vec3<float>>;
     const Three low(second_[k * levels_ + at.below].mean + 9),
@@ -116,7 +116,7 @@ class PatchTable {
     return (1 - at.part) * low.cast<double>() + at.part * high.cast<double>();
   }
   /// Solved nodes that share a load that is spread over a patch of the radius of `level` around node k. What
-  /// is missing from 1 falls on what is held.
+  /// is missing from 1 acts on the fixed region.
   [[nodiscard]] std::span<const Share> spread(std::size_t k, std::size_t level) const noexcept {
     const std::size_t i = k * levels_ + level;
     return {spread_.data() + spread_begin_[i], spread_begin_[i + 1] - spread_begin_[i]};

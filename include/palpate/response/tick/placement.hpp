@@ -63,8 +63,7 @@ void add_position(const LoadMesh& touch, const LoadPosition& position, List& lis
                spacing = mean_of(&LoadNode::spacing, field, c.position);
   c.level = field.table().level(tool.seen2() - 0.25 * spacing * spacing);
   c.sagitta = field.table().edge(&MomentRow::sagitta, c.position.node, c.position.weight, tool.a);
-  // Far from the surface the nearest position may jump; there w has faded: to a half at the distance of an
-  // edge.
+  // Far from the surface the nearest position may jump, so w fades with the distance: to a half at one edge.
   const double far2 = c.position.distance2 / (size * size);
   c.regular = 1 / (1 + far2 * far2);
   double sum = 0;
@@ -82,8 +81,8 @@ void add_position(const LoadMesh& touch, const LoadPosition& position, List& lis
 }
 
 /// each(part, node, level) for the spreads (PatchTable) that together are the load of a contact whose flat
-/// punch has the radius sqrt(loaded2). Interpolated twice, over the position's triangle and over those that
-/// the spreads lie on: a quarter of spacing^2 each time.
+/// punch has the radius sqrt(loaded2). The load is interpolated twice, over the position's triangle and over
+/// those of the spreads; each time it widens by a quarter of spacing^2.
 template <class Each>
 void each_spread(const ResponseField& field, const PlacedContact& c, double loaded2,
                  const Each& each) noexcept {
@@ -99,8 +98,8 @@ void each_spread(const ResponseField& field, const PlacedContact& c, double load
 /// per solved node, all 0 before; `nodes` lists those with a weight. Returns the part of the force that they
 /// carry.
 ///
-/// Continuous. Points of the patch's plane laid onto the surface are not: off it, their nearest positions
-/// jump from sheet to sheet.
+/// Continuous in the contact's position. Nearest positions of points of the patch's plane would not be: away
+/// from the surface they jump from sheet to sheet.
 [[nodiscard]] inline double spread_force(const ResponseField& field, const PlacedContact& c, double loaded2,
                                          float* weight, std::vector<std::uint32_t>& nodes) noexcept {
   nodes.clear();

@@ -81,8 +81,8 @@ struct SphereAcross {
 
   SphereAcross(const Indenter& tool, const SphereShape& shape, const PlacedContact& c,
                const MovedByLoads& moved, double P) noexcept {
-    // h = A (m + h): what the force across does to w_t and s counts. A body that bends easily would be thrown
-    // aside if the norm of A were not at most a half.
+    // h = A (m + h): the force across changes w_t and s, too. The norm of A is bounded by a half: otherwise h
+    // would have no bound on a body that bends easily.
     Mat3<double> A = shape.R / tool.sphere * P * (shape.curvature * c.w - moved.couple);
     A -= tool.m * (tool.m.transpose() * A);
     A *= smooth_limit(A.squaredNorm(), tick::max_lean_feedback2);
@@ -94,7 +94,7 @@ struct SphereAcross {
   }
 };
 
-/// dG/dF: what moves of the contact takes from the depth [m].
+/// dG/dF: the part of the depth that the shift of the contact takes [m].
 [[nodiscard]] inline double sphere_lift(const Indenter& tool, const SphereShape& shape,
                                         const SphereAcross& across, const Vec3<double>& shift) noexcept {
   const double lift = 0.5 * (tool.sphere * across.h.squaredNorm() + shape.curvature * shift.squaredNorm()) +
@@ -103,8 +103,8 @@ struct SphereAcross {
   return lift * smooth_limit(lift * lift, tick::max_lift2 * shape.depth * shape.depth);
 }
 
-/// Compliance / mu that a body loses that spreads under the contact, 8/3 k nu/(1-nu) d_H e / F [1/m]. `near`:
-/// the half-space's compliance.
+/// Compliance / mu that is lost because the body spreads under the contact, 8/3 k nu/(1-nu) d_H e / F [1/m].
+/// `near`: the half-space's compliance.
 [[nodiscard]] inline double sphere_stiffening(const SecondOrder& k, double nu, double near,
                                               double indentation, double strain) noexcept {
   const double max = tick::max_stiffening * near,
@@ -112,9 +112,9 @@ struct SphereAcross {
   return stiffer * smooth_limit(stiffer * stiffer, max * max);
 }
 
-/// Force and place of a sphere's contact, by passes of which each knows what the one before gave: the radius,
-/// what is taken from depth and compliance. The placed stage is made in `placed`, for the radius of the last
-/// pass but one.
+/// Force and position of a sphere's contact, by passes. Each uses the radius and the parts taken from depth
+/// and compliance of the pass before. The placed stage is made in `placed`, for the radius of the last pass
+/// but one.
 [[nodiscard]] inline SphereSolution solve_sphere_contact(const ResponseField& field, const SecondOrder* k,
                                                          const Indenter& sphere, const SphereShape& shape,
                                                          PlacedContact& placed) noexcept {
@@ -164,9 +164,9 @@ struct SphereAcross {
   return out;
 }
 
-/// Within the contact the surface lies on the sphere; beside it, not inside. `at`: an undeformed position; u:
-/// its displacement, changed along m by less than 0.4 d: what is farther off is another side of the body.
-/// `reach`: where that ends, from the contact's rim [m].
+/// Puts the surface on the sphere within the contact, and keeps it outside the sphere beside the contact.
+/// `at`: an undeformed position; u: its displacement, changed along m by less than 0.4 d: what is farther off
+/// is another side of the body. `reach`: where that ends, from the contact's rim [m].
 inline void rest_on_sphere(const DrawnContact& c, const Vec3<double>& at, double reach,
                            Vec3<double>& u) noexcept {
   const Indenter& tool = c.tool;
@@ -176,10 +176,12 @@ inline void rest_on_sphere(const DrawnContact& c, const Vec3<double>& at, double
   if (!(rest > 0)) return;
   const double inside = depth - tool.sphere + std::sqrt(rest) - moved.dot(tool.m), off = inside / depth,
                r = (at - tool.x).norm();
-  // What is inside is moved out, wholly up to half a radius from the rim, no more from a radius or `reach`
-  // on; what lies below is drawn up, towards the rim less and less over a tenth of the radius.
+  // A point inside the sphere is moved out: wholly up to half of a radius (or of `reach`, if less) from the
+  // rim, not at all from all of it on. A point below is drawn up, towards the rim less and less over a tenth
+  // of the radius.
   const double share = inside > 0 ? 2 - 2 * (r - tool.a) / (std::min)(tool.a, reach) : 10 * (1 - r / tool.a);
-  // Near the sphere's equator, from a quarter of R_s^2 down, and off by d, nothing is moved.
+  // The shift fades to nothing towards the sphere's equator, from a quarter of R_s^2 down, and where the
+  // point is off by d.
   u += std::clamp(share, 0.0, 1.0) * (std::min)(4 * rest / (tool.sphere * tool.sphere), 1.0) *
        (std::max)(1 - off * off, 0.0) * inside * tool.m;
 }

@@ -15,7 +15,7 @@
 ///
 /// What a contact's near field does with itself is in its own terms of second order (near_field.hpp).
 
-#include <palpate/core/detail/simd_shuffle.hpp>
+#include <palpate/core/simd_shuffle.hpp>
 #include <palpate/response/second_order.hpp>
 #include <palpate/response/tick/stages.hpp>
 

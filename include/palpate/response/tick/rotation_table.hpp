@@ -5,12 +5,12 @@
 /// The table is made at set-up.
 ///
 /// Without traction the normal derivative of u along the surface is minus the slope of its normal part, so u
-/// on the surface tells all of it: the slopes s_i = n . du/dt_i turn the normal n, the curl in the surface
-/// turns about it:
+/// on the surface determines the rotation: the slopes s_i = n . du/dt_i rotate the normal n, the curl in the
+/// surface rotates about it:
 ///     omega = s_2 t_1 - s_1 t_2 + 1/2 (t_2 . du/dt_1 - t_1 . du/dt_2) n ,   t_1 x t_2 = n
 /// du/dt_i: the linear field that fits u best at a vertex's neighbours, in space, so that a rotation of the
-/// body is exact on an edge of it, too; the normal derivative, which smooth neighbours hardly tell, is held
-/// by a small penalty.
+/// body is exact on an edge of it, too. Neighbours on a smooth surface hardly determine the normal
+/// derivative; a small penalty keeps it bounded.
 
 #include <palpate/config.hpp>
 #include <palpate/response/setup/element_mesh.hpp>

@@ -66,8 +66,8 @@ struct RegularDisplacement {
          rotating;
 }
 
-/// Displacement whose force S u the tool feels and no field goes with: derivatives by the force of two
-/// energies of third degree, of which the loads above are the derivatives by w's gradient.
+/// Displacement u whose force S u the tool feels, without a field: derivatives by the force of two energies
+/// of third degree. The loads above are the derivatives of these energies by w's gradient.
 ///
 ///     stiffening: D e, e = radial . P the surface's strain by w, D = -nu/(1-nu) delta_n P_n
 ///     lever (P_n w_t - w_n P_t) . slope: a body that bends beneath the patch moves it sideways, too

@@ -3,7 +3,7 @@
 
 /// @file A rigid frictionless sphere pressed into the body: the contact area grows with depth. Per tick.
 ///
-/// The half-space's answer in series with the regular part, d = (1 + k d_H/R) d_H + C_w F, l =
+/// The half-space's compliance in series with that of the regular part, d = (1 + k d_H/R) d_H + C_w F, l =
 /// ln((R+a)/(R-a)):
 ///     d_H = (a/2) l - g a^4/(3 R^3),   F = E* ((a^2 + R^2) l/2 - a R - 8/15 g a^5/R^3),   E* = E/(1-nu^2)
 /// | symbol | name | unit | range |
@@ -12,7 +12,7 @@
 /// | a | radius of the contact | m | [0, 0.95 R] |
 /// | d | how deep the sphere is pressed | m | <= 0: none |
 /// | C_w | normal compliance of the regular part; < 0 where a layer lies on something stiff | m/N |  |
-/// | g | of the gap's fourth power of r, what a sphere of radius R on a plane has too much | - | [0, 1] |
+/// | g | of the gap's r^4, the part that a sphere of radius R on a plane has too much | - | [0, 1] |
 /// | k | softening by finite strain | - | > -0.25 |
 /// k1, k2: the surface's principal curvatures. Limits: no friction; pressed along the normal; the depth is
 /// bounded where a = 0.95 R; what a body takes from d_H is at most half of it. Sources: [sneddon1965],

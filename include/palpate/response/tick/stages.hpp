@@ -4,7 +4,7 @@
 /// @file The stages of a contact in a tick of a response field. A stage is a value: made by one function from
 /// those before it, constant afterwards.
 ///
-/// | stage | type | made in | holds |
+/// | stage | type | made in | contents |
 /// |---|---|---|---|
 /// | given | Indenter | response_contact.hpp | what presses, where, by how much |
 /// | placed | PlacedContact | placement.hpp | nodes of the load mesh, w, compliance of the mean |
@@ -84,7 +84,7 @@ struct RotationLoads {
   Vec3<double> displacement = Vec3<double>::Zero();  ///< of the patch by all of them [m]
 };
 
-/// With what bonds the patch: its compliance when no moment of the patch may grow.
+/// With the loads that bond the patch: C, S are those of a patch whose moments are kept at zero.
 struct BondedContact {
   double activation = 1;  ///< 0: others have moved the patch as far as it would (ContactSystem::activate)
   PatchMoments moments;   ///< of a wide patch
@@ -96,7 +96,7 @@ struct BondedContact {
 struct LinearContact {
   Vec3<double> P;        ///< force [m^2]
   Vec3<double> imposed;  ///< by the other contacts' forces beneath the patch: spread, slopes along t1, t2
-  Vec3<double> rhs;      ///< d less what others' loads and the rotation's move the patch [m]
+  Vec3<double> rhs;      ///< d less the patch's displacement by others' loads and by rotated tools [m]
 };
 
 /// Near terms of second order.
@@ -125,7 +125,7 @@ struct SecondOrderContact {
   Vec3<double> rhs;  ///< right-hand side with all loads [m]
 };
 
-/// The answer.
+/// The solved contact.
 struct SolvedContact {
   Vec3<double> x;  ///< where it acts: a sphere's contact moves on the body [m]
   double a = 0;    ///< radius [m]
