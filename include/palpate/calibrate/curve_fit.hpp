@@ -39,7 +39,7 @@ struct CurveFit {
 };
 
 struct CurveFitParams {
-  double worst_rms = 0.2;  ///< relative: a fit worse than this is refused
+  double worst_rms = 0.2;  ///< relative: a fit worse than this is refused; chosen
   int max_steps = 200;
 };
 
@@ -120,7 +120,8 @@ template <std::size_t N, class Law>
     }
     return B;
   };
-  // Marquardt's start and factors; at a damping of 1e27 the step is below rounding.
+  // Marquardt's start and factors; at a damping of 1e27 the step is below rounding, and at 1e-12 it is
+  // Gauss and Newton's.
   double damping = 1e-3, now = cost(p);
   bool settled = false;
   for (int step = 0; step < params.max_steps && !settled; ++step) {
@@ -180,6 +181,7 @@ template <std::size_t N, class Law>
          "the points do not determine all parameters: the law has too many, or the depths are too alike");
   const Matrix inverse = unit.asDiagonal() * correlation.solve(Matrix::Identity()) * unit.asDiagonal();
   const double freedom = double(m - open), variance = now / freedom, z = 1.959963985;
+  // z: of a normal distribution, 97.5 % are below it.
   // Student's t by Cornish and Fisher's expansion; 2 % low at two degrees of freedom.
   const double t = z + (z * z * z + z) / (4 * freedom) +
                    (5 * std::pow(z, 5) + 16 * z * z * z + 3 * z) / (96 * freedom * freedom);

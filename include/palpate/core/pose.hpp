@@ -24,7 +24,8 @@ struct Pose {
 
 /// True when every entry is finite, the translation is below `limit` [m] and the rotation is orthonormal and
 /// right-handed to within `tolerance`. A device driver can hand over anything; the servo tick asks this
-/// first.
+/// first. The defaults are chosen: squares of 1e6 m are safe in float, and 1e-3 forgives what a
+/// driver rounds.
 template <Real S>
 [[nodiscard]] inline bool is_usable(const Pose<S>& X, S limit = S(1e6), S tolerance = S(1e-3)) noexcept {
   const auto within = [](const Vec3<S>& v, S most) {

@@ -98,7 +98,8 @@ template <Real S>
       normals[v] += twice / S(6);
     }
   }
-  // |sum of area vectors| / sum of areas: 1 where flat, 0.71 on a cube's edge, 0.58 at its corner.
+  // |sum of area vectors| / sum of areas: 1 where flat, 0.71 on a cube's edge, 0.58 at its corner;
+  // 0.9 and 0.64 lie between them.
   const auto sharpness = [&](std::uint32_t v) {
     const S flat = normals[v].norm() / areas[v];
     return flat < S(0.64L) ? 0 : flat < S(0.9L) ? 1 : 2;

@@ -72,7 +72,7 @@ class Gate {
     S max_force_rate = S(500);  ///< [N/s]. Reached by 500 N/m at 1 m/s: idle in normal use, catches jumps
     S max_torque_rate = S(25);  ///< [N m/s]. The force rate at a 0.05 m arm
     S arm_after = S(0.5);       ///< time free of contact before force [s], >= 0: a human can let go in it
-    S ramp_time = S(0.5);       ///< [s], >= 0
+    S ramp_time = S(0.5);       ///< [s], >= 0; chosen
     S max_gap = S(5e-3);        ///< longest step [s]: five periods at 1 kHz; the hand moves 5 mm at 1 m/s
     S max_speed = S(1.5);       ///< of the device's tip [m/s]: faster is a fault or an arm let go
   };

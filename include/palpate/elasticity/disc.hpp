@@ -170,6 +170,7 @@ class Disc {
 /// edge is at most `sagitta` deep: the side of a block lies below its top by all of z.
 [[nodiscard]] inline double edge_depth(const Vec3<double>& r, const Vec3<double>& m, double a,
                                        double sagitta = (std::numeric_limits<double>::max)()) noexcept {
+  // 1e-300: r = 0 is not divided by.
   const double z = r.dot(m), near2 = (std::min)(1.0, a * a / (std::max)(r.squaredNorm(), 1e-300));
   return (std::max)(z - (std::min)(z * near2, sagitta), 0.0);
 }

@@ -31,6 +31,7 @@ struct FlatPunchCompliance {
 /// Twelve points of the unit disc with equal weights, for means with the flat punch's weight: two rings by
 /// Gauss's rule in sqrt(1 - s^2), in which the weight is uniform.
 [[nodiscard]] inline const std::array<std::array<double, 2>, 12>& flat_punch_points() noexcept {
+  // h = sqrt(3)/2; the rings have the radii r and q.
   static constexpr double h = 0.86602540378443865, r = 0.97741587937861918, q = 0.61481015937592787;
   static constexpr std::array<std::array<double, 2>, 12> points{{{r, 0},
                                                                  {0.5 * r, h * r},

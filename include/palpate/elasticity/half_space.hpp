@@ -48,7 +48,7 @@ class HalfSpaceDeformation {
 
   struct Params {
     S nu{S(0.5)};                 ///< Poisson's ratio [-]
-    S smallest_radius{S(1e-3L)};  ///< a [m]
+    S smallest_radius{S(1e-3L)};  ///< a [m]; chosen: a millimetre
     bool normals{true};           ///< false: none are ever written, and the mesh need not be closed
   };
 

@@ -35,7 +35,7 @@ template <class T>
   if (b > T(0)) {
     const T z = r.dot(m), fn = f.dot(m);
     const Vec3<T> p = r - z * m, ft = f - fn * m;
-    // Above a hollow of the body R + z may vanish: from a tenth of R on it is bounded instead of exact.
+    // Above a hollow of the body R + z may vanish: from a tenth of R (chosen) on it is bounded, not exact.
     const T sum = (std::max)(R + z, T(0.1) * R), s1 = T(1) / sum, fp = ft.dot(p);
     u += b * (fn * (inverse * m - (inverse * s1) * p) + s1 * ft - (fp * inverse * s1 * s1) * p +
               (fp * inverse * s1) * m);
@@ -52,7 +52,7 @@ template <class T>
   Mat3<double> t = (-1.5 / pi * r.dot(n) / (R2 * R3)) * (r * r.transpose());  // columns: force directions
   const double b = 1 - 2 * nu;
   if (!(b > 0)) return t;
-  // Strain of v by its gradient. A = 1/(R+z), a_i = dA/dx_i.
+  // Strain of v by its gradient. A = 1/(R+z), a_i = dA/dx_i; R + z is bounded as in point_load().
   const double z = r.dot(m), sum = (std::max)(R + z, 0.1 * R), A = 1 / sum, iR = 1 / R;
   const V p = r - z * m, e = r * iR;
   const Mat3<double> I = Mat3<double>::Identity(), P = I - m * m.transpose();

@@ -110,11 +110,11 @@ class TriangleBvh {
   struct Cull {
     std::array<float, 3> x;
     S slack;  // [m], more than the rounding of a distance to a box; < 0: too far for float, visit all
-    static constexpr S widened = S(1.000002L);  // of a square, in float
+    static constexpr S widened = S(1.000002L);  // more than the roundings of a square in float
     /// What a squared distance to a box must not exceed for the box to contain something at d2 or nearer.
     [[nodiscard]] float limit(S d2) const noexcept {
       if (slack < S(0)) return (std::numeric_limits<float>::max)();
-      const S d = std::sqrt(d2) + slack;
+      const S d = std::sqrt(d2) + slack;  // 1e38: the largest power of ten in float
       return static_cast<float>((std::min)(d * d * widened, S(1e38L)));
     }
   };
@@ -122,7 +122,8 @@ class TriangleBvh {
   [[nodiscard]] Cull cull(const Vec3<S>& x, S spread = S(0)) const noexcept {
     const Vec3<S> e = x - origin_;
     const S size = e.cwiseAbs().maxCoeff() + spread;
-    if (!(size < S(1e15L))) return {{0, 0, 0}, S(-1)};
+    if (!(size < S(1e15L)))  // chosen: squares of less are finite in float
+      return {{0, 0, 0}, S(-1)};
     return {{static_cast<float>(e.x()), static_cast<float>(e.y()), static_cast<float>(e.z())},
             S(4) * S(std::numeric_limits<float>::epsilon()) * (size + reach_)};
   }
@@ -187,7 +188,7 @@ class TriangleBvh {
     if (!(scale >= (std::numeric_limits<S>::min)()) || !(origin.cwiseAbs().maxCoeff() <= far)) return best;
     const Vec3<S> d = direction / scale;
     const detail::ShearedRay<S> ray(origin, d);
-    Vec3<S> inverse;
+    Vec3<S> inverse;  // of a component that is 0 a large number instead, finite in float (chosen)
     for (int i = 0; i < 3; ++i) inverse[i] = S(1) / (std::abs(d[i]) > S(1e-20L) ? d[i] : S(1e-20L));
     // More than the rounding of a position on the ray: a grazed box must not be missed.
     const Vec3<S> from = origin - origin_;
@@ -276,6 +277,7 @@ class TriangleBvh {
   [[nodiscard]] const Vec3<S>& origin() const noexcept { return origin_; }
 
  private:
+  // Of a ray's origin: a million times the largest coordinate (chosen).
   static constexpr S far = S(1e6L) * S(1e6L);
   // A walk keeps at most seven nodes of each of 62 levels, and eight.
   static constexpr std::size_t stack_size = 448;

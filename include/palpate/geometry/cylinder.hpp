@@ -126,7 +126,8 @@ class Cylinder {
     const Vec2 o2(o.x() / R, o.z() / R), e2(e.x(), e.z());
     S side_in = caps.t_in, side_out = caps.t_out;
     bool side_enters = false, side_leaves = false;
-    if (e2.cwiseAbs().maxCoeff() < std::numeric_limits<S>::epsilon() * S(1e-6L)) {  // along the axis
+    // Along the axis: a millionth of a rounding (chosen), so that nothing overflows.
+    if (e2.cwiseAbs().maxCoeff() < std::numeric_limits<S>::epsilon() * S(1e-6L)) {
       if (!(o2.squaredNorm() <= S(1))) return detail::no_hit<S>();
     } else {
       if (!detail::unit_ball_interval(o2, e2, side_in, side_out)) return detail::no_hit<S>();

@@ -23,9 +23,8 @@ namespace palpate {
 template <Real S>
 struct MeshExtremalParams {
   std::size_t at_most = 16;  ///< 6 .. max_extremal_points
-  S radius =
-      S(0.1L);  ///< rho, over which curvature is averaged, as a part of the box's diagonal: [0.01, 0.5]
-  S prominence = S(0.15L);  ///< least prominence, as a part of the range of curvature: (0, 1]
+  S radius = S(0.1L);  ///< rho of the curvature's average, part of the box's diagonal: [0.01, 0.5]; chosen
+  S prominence = S(0.15L);  ///< least prominence, as a part of the range of curvature: (0, 1]; chosen
 };
 
 namespace detail {
@@ -228,7 +227,7 @@ template <Real S>
     bool maximum;
   };
   std::vector<Peak> peaks;
-  if (range > 0.1 * std::abs(mean)) {
+  if (range > 0.1 * std::abs(mean)) {  // chosen: a body that varies by less is round
     const std::vector<detail::HalfEdge> edges = detail::sorted_half_edges(mesh.triangles());
     for (const auto* height : {&up, &down}) {
       const std::vector<double> all = detail::prominences(*height, edges);
@@ -243,6 +242,7 @@ template <Real S>
   const auto add = [&](const Vec3<S>& position, const Vec3<S>& normal, std::size_t most) {
     if (points.size() >= most) return;
     for (const ExtremalPoint<S>& p : points) {
+      // Chosen, as the description says: 60 degrees, and 120 for the other side of a thin part.
       const S away = (p.position - position).norm(), along = p.normal.dot(normal);
       if ((away < S(2) * rho && along > S(0.5L)) || (away < rho / S(2) && along > S(-0.5L))) return;
     }
@@ -267,7 +267,7 @@ template <Real S>
       for (std::size_t v = 0; v < height.size(); ++v) {
         if (!((mesh.vertices()[v] - top).norm() < S(2) * rho)) continue;
         const double below = (height[peak.vertex] - height[v]) / peak.prominence;
-        flat = flat && below < 0.05;
+        flat = flat && below < 0.05;  // chosen: a twentieth of the prominence
         if (!(below < 0.5)) continue;
         const S weight = static_cast<S>(0.5 - below) * mesh.vertex_areas()[v];
         sum += weight * (mesh.vertices()[v] - top);
@@ -291,6 +291,7 @@ template <Real S>
     spread += static_cast<double>(mesh.vertex_areas()[v] / mesh.area()) * e * e.transpose();
   }
   const Eigen::SelfAdjointEigenSolver<Mat3<double>> axes(spread);
+  // Axes within 5 % in their squares are equal (chosen): the eigenvectors of equal ones are arbitrary.
   const bool round = axes.eigenvalues()[2] < 1.05 * axes.eigenvalues()[0];
   for (int axis = 2; axis >= 0; --axis) {
     Vec3<double> d =

@@ -58,7 +58,7 @@ class SampledSurface {
       // A node's own cell reaches half a spacing to each side, its spline one more; blocks are whole.
       const S n = std::ceil(extent[k] / w_ / S(4)) + S(2);
       nodes *= S(4) * n;
-      if (!(nodes <= S(5e7L)))
+      if (!(nodes <= S(5e7L)))  // chosen: 200 MB
         fail("SampledSurface", "spacing [m] asks for more than 50 million nodes", static_cast<double>(w_));
       blocks_[static_cast<std::size_t>(k)] = static_cast<std::size_t>(n);
       middle_[static_cast<std::size_t>(k)] = S(2) * n - S(1);
@@ -154,7 +154,8 @@ class SampledSurface {
   using Four = detail::Simd4;
 
   // A coefficient is within 0.75 w of its sample, the nearest sample is within 0.87 w, and the field within
-  // 1.62 w of d: a coefficient of more than this has no contact in its cell.
+  // 1.62 w of d, together 3.24 w: a coefficient of more than `margin` has no contact in its cell. `far` is
+  // chosen: more than that, and few enough nodes.
   static constexpr S margin = S(3.25L), far = S(8);  // of samples that do not count
 
   /// The three quadratic B-splines that are not 0 at an offset t in [-1/2, 1/2] from a node, and their
@@ -284,7 +285,7 @@ class SampledSurface {
       for (std::size_t y = 1; y + 1 < n[1]; ++y) {
         for (std::size_t x = 1; x + 1 < n[0]; ++x) {
           const std::size_t i = index({x, y, z});
-          field_[i] =
+          field_[i] =  // c of the formula above, 1.75 = 1 + 6/8
               f[i] * 1.75f -
               (f[i - 1] + f[i + 1] + f[i - row_] + f[i + row_] + f[i - layer_] + f[i + layer_]) / 8.0f;
         }

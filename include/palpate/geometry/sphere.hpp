@@ -37,7 +37,8 @@ class Sphere {
   [[nodiscard]] SurfacePoint<S> closest(const Vec3<S>& x) const noexcept {
     const Vec3<S> r = x - p_.centre;
     if (!is_finite(r)) return detail::nowhere<S>(p_.centre + p_.radius * Vec3<S>::UnitX(), Vec3<S>::UnitX());
-    // A far point is brought near first: |r| may overflow where r does not.
+    // A far point is brought near first: |r| may overflow where r does not. Chosen: 1e12
+    // of the largest radius have a square that is finite in float.
     const S size = r.cwiseAbs().maxCoeff(), limit = p_.radius * S(1e12L);
     if (size > limit) {
       const Vec3<S> n = (r / size).normalized();

@@ -303,6 +303,7 @@ class Superellipsoid {
     };
     for (int i = 0; i <= grid; ++i)
       for (int j = 0; j <= grid; ++j) look(static_cast<S>(i) / grid, static_cast<S>(j) / grid);
+    // To 1e-4 of an octant; 1 % less for what the search may have missed. Both chosen.
     for (S h = S(0.5) / grid; h > S(1e-4); h /= S(2))
       for (int k = 0; k < 8 && (look(u + h, v) || look(u - h, v) || look(u, v + h) || look(u, v - h)); ++k) {
       }
@@ -358,7 +359,7 @@ class Superellipsoid {
       const S d = away.dot(f.normal);
       const Vec3<S> tau = tangential(away, f.normal);
       if (tau.cwiseAbs().maxCoeff() <= S(4) * epsilon * scale) break;
-      // Newton where the distance is convex; elsewhere the same length downhill.
+      // Newton where the distance is convex; elsewhere the same length downhill, at most 20 |tau| (chosen).
       const auto stiff = [&](S bend) { return (std::max)(std::abs(S(1) + d * bend), S(0.05)); };
       const S s1 = tau.dot(f.bend.dir1) / stiff(f.bend.k1), s2 = tau.dot(f.bend.dir2) / stiff(f.bend.k2);
       Vec3<S> step = s1 * f.bend.dir1 + s2 * f.bend.dir2;

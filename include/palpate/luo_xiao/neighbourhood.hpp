@@ -63,7 +63,7 @@ class AreaNeighbourhood {
   static constexpr bool active = true;
 
   struct Params {
-    S reference_area{S(1e-6)};  ///< A_ref [m^2]
+    S reference_area{S(1e-6)};  ///< A_ref [m^2]; chosen: a square millimetre
     S radius{0};                ///< R [m]
   };
 

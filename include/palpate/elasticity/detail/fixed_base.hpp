@@ -115,8 +115,8 @@ class FixedBase {
   using Square = Eigen::Matrix<double, 6, 6>;
 
   // Up to 48 points that stand for the region, far from each other, with the areas nearest to them. Regular
-  // meshes have many that are as far: the first one counts, and a rounding decides nothing, so that a turned
-  // body has the same.
+  // meshes have many that are as far to 1e-9 (chosen: above rounding): the first one counts, and a rounding
+  // decides nothing, so that a turned body has the same.
   void sample(const std::vector<V>& vertex, const std::vector<double>& area) {
     std::vector<V> position;
     std::vector<double> share;
@@ -151,7 +151,7 @@ class FixedBase {
       normal += weight_[s] * J.transpose() * J;
     }
     const Eigen::LDLT<Square> ldlt(normal);
-    // Of a disc the smallest pivot is a quarter of the largest.
+    // Of a disc the smallest pivot is a quarter of the largest; of a line rounding leaves less than 1e-9.
     if (!(ldlt.vectorD().minCoeff() > 1e-9 * ldlt.vectorD().maxCoeff()))
       fail(name, "the fixed region must not lie within a line");
     least_squares_ = ldlt.solve(Square::Identity());

@@ -18,7 +18,7 @@ namespace palpate::detail {
 template <Real S>
 class DistanceGrid {
  public:
-  static constexpr S slack = S(0.25L);  ///< |d(c)| is at most 1 + slack times the bound
+  static constexpr S slack = S(0.25L);  ///< |d(c)| is at most 1 + slack times the bound; chosen
 
   struct Cell {
     float distance;          // signed lower bound at the centre [m]
@@ -39,6 +39,7 @@ class DistanceGrid {
       : low_(low) {
     const Vec3<S> extent = high - low;
     const S longest = extent.maxCoeff();
+    // A flat body counts as a thousandth of its length thick (chosen), or its cells would have no size.
     width_ = longest * std::cbrt((extent / longest).cwiseMax(S(1e-3L)).prod() / static_cast<S>(cells));
     for (int i = 0; i < 3; ++i) {
       const S n = std::ceil(extent[i] / width_);
@@ -56,6 +57,7 @@ class DistanceGrid {
           std::uint32_t triangle = before ? before->triangle : 0;
           const Vec3<S> c = centre(i, j, k);
           S d = near(c, triangle);
+          // Neighbouring centres are one width apart; 1 % more covers the rounding of both.
           if (!before || d < S(1.01L) * width_)
             d = exact(c, triangle);
           else if (before->distance < 0)

@@ -44,6 +44,7 @@ inline void require_vertices(std::size_t vertices, const char* where) {
     return n;
   };
   const double area = 2 * (edges[0] * edges[1] + edges[1] * edges[2] + edges[2] * edges[0]);
+  // Cells of size h give about area / h^2 vertices: a quarter of the wanted size gives too many.
   double fine = 0.25 * std::sqrt(area / static_cast<double>(vertices));
   double coarse = 2 * (std::max)({edges[0], edges[1], edges[2]});  // one cell: 8 vertices
   for (int i = 0; i < 60; ++i) {

@@ -87,7 +87,8 @@ template <Real S>
         winding += winding_share<W>(corner(i, 0) - place, corner(i, 1) - place, corner(i, 2) - place);
     }
     const W expected = volume[p] > 0 ? W(0) : W(1);
-    // Half way between 0 and 1 the vertex lies on the other part.
+    // The winding number is 1/2 where the vertex lies on the other part, which is no error: 0.75 is half way
+    // from there to a whole number. A volume below 1e-12 of the box's is the sum's rounding (chosen).
     const W box = (high[p] - low[p]).norm();
     if (std::abs(volume[p]) <= W(1e-12) * box * box * box || std::abs(winding - expected) > W(0.75))
       wrong.push_back(parts.triangles[parts.begin[p]]);

@@ -78,7 +78,8 @@ class SuperellipsoidNewton {
     foot.z = {off_zero(x[0] * per_[0]), off_zero(x[1] * per_[1]), off_zero(x[2] * per_[2])};
     raise(foot);
     start.F = foot.A * foot.s + foot.w * foot.z[2] * foot.z[2];
-    // A sum of numbers >= 0 is finite if they are. NaN may have become a number.
+    // A sum of numbers >= 0 is finite if they are. NaN may have become a number. F is 1 on the surface; a
+    // thousandth more (chosen) keeps points that rounding, in float too, puts just outside.
     start.near = is_finite(x[0] + x[1] + x[2]) && is_finite(start.F) && start.F < S(1.001L);
   }
   /// On to where the ray from the centre through x leaves the body.
@@ -147,6 +148,7 @@ class SuperellipsoidNewton {
     const V c = (q_ - p_) * A * per_s, alpha = ux * e1 + vy * e2;
     const V A2 = c * ((q_ - S(2) * p_) * alpha * alpha * per_s + (p_ - S(1)) * (ue * e1 + ve * e2)),
             A1 = (S(2) * (p_ - S(1))) * c * alpha, C = ((p_ - S(1)) * (p_ - S(2))) * A;
+    // A step may move a coordinate by 1e-5 of itself (chosen): the terms left out are then about a rounding.
     const auto beyond = [](const V& e, const V& at) -> V {
       return abs(e) - (S(1e-5L) * at + std::numeric_limits<S>::epsilon());
     };

@@ -146,7 +146,7 @@ class DuffingForce {
     if (!is_positive(force)) return S(0);
     if (!(force < max_force_)) return max_depth_;
     if (p_.c3 == S(0)) return force / p_.c1;
-    // Above 3/4 of F_max the distance to the fold has more digits than D.
+    // Above 3/4 of F_max (chosen) the distance to the fold has more digits than D.
     if (p_.c3 < S(0) && force > S(0.75) * max_force_) return depth_near_fold(force);
     // D = D0 y with a y + b y^3 = 1. D0 is the min of the roots of the linear and of the cubic law alone, the
     // cubic one within 3.2 %. The root y lies in [0.66, 1.14], a and b are of order 1 at most, and the fitted

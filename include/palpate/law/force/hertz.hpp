@@ -53,6 +53,7 @@ class HertzForce {
   /// Integral of F from 0 to D [J].
   [[nodiscard]] S energy(S depth) const noexcept {
     if (!is_positive(depth)) return S(0);
+    // Exact: int F dD = 2/5 F (D - C F) + 1/2 C F^2 in the series, 2/5 F D of a law D^(3/2) beyond its end.
     const Split s = at(depth);
     return s.series_force * s.depth * (S(0.5) - S(0.1L) * s.own) +
            S(0.4L) * (s.force * depth - s.series_force * s.depth);
@@ -96,7 +97,7 @@ class HertzForce {
     const S force = p_.k * root * d * (v * v * v), over = depth / d;
     return {depth > d ? force * over * std::sqrt(over) : force, d, force, v * v};
   }
-  // Where the series ends: e = -0.3. The fold is at e = -0.385, -2/(3 sqrt(3)).
+  // Where the series ends: e = -0.3, chosen before the fold at e = -0.385, -2/(3 sqrt(3)).
   [[nodiscard]] S series_depth() const noexcept {
     if (!(p_.compliance < S(0))) return (std::numeric_limits<S>::max)();
     const S root = S(-0.3L) / (p_.compliance * p_.k);

@@ -22,7 +22,7 @@ namespace palpate {
 /// | symbol | name    | unit | range                                                                  |
 /// |--------|---------|------|------------------------------------------------------------------------|
 /// | L      | `limit` | N    | > 0                                                                    |
-/// | a      | `knee`  |------| (0, 1), default 0.8: share of the limit up to which F is the law's own |
+/// | a      | `knee`  |------| (0, 1), default 0.8 (chosen): part of L up to which F is the law's own |
 ///
 /// A parabola joins the law and the limit with continuous slope (C1), zero at the limit; dF/dD jumps nowhere
 /// that the law's does not, d2F/dD2 jumps at both ends. Force, tangent, energy and inverse are closed forms.

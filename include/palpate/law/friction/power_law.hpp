@@ -26,7 +26,7 @@ namespace palpate {
 /// | K      | `K`            | N^(1-beta) | > 0                                                  |
 /// | beta   | `beta`         | -          | [2/3, 1]: 2/3 one elastic junction, 1 Coulomb        |
 /// | mu_D   | `mu_dynamic`   | -          | > 0                                                  |
-/// | F_0    | `linear_below` | N          | >= 0, default 0.01; 0 gives the power law as printed |
+/// | F_0    | `linear_below` | N          | >= 0, default 0.01 (chosen); 0: the law as printed   |
 /// | F_n    | argument       | N          | any; F_n <= 0 and NaN give 0                         |
 ///
 /// The power law has infinite slope at F_n = 0, so that a light touch would stick at any sideways force; the

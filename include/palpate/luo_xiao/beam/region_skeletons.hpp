@@ -51,8 +51,8 @@ concept RegionCoupling = requires(double a) {
 ///
 /// K_jk is the stiffness of the beam between contacts j and k (V.A.1), its section the mean of theirs when
 /// coupled. Each contact's skeleton has the body's whole volume, so its sections do not depend on the others.
-/// A beam between contacts is at least `min_distance` of the sum of a contact's beam lengths long, because
-/// closer regions are about to merge. Source: [luo2005], VI.
+/// A beam between contacts is at least `min_distance` (chosen) of the sum of a contact's beam lengths long,
+/// because closer regions are about to merge. Source: [luo2005], VI.
 template <ContactSkeleton K, RegionCoupling G = CoupledRegions, std::size_t M = 8>
 class RegionSkeletons {
   static_assert(M >= 1 && M <= 32, "palpate::RegionSkeletons: 1 <= M <= 32, the system is on the stack");

@@ -92,7 +92,7 @@ class FacePartition {
   using Scalar = S;
 
   struct Params {
-    S fade{S(0.1)};  ///< h [-]
+    S fade{S(0.1)};  ///< h [-]; chosen: a little below the limit of 1/8
   };
 
   /// `normals` are the undeformed surface's at the mesh's vertices, unit.

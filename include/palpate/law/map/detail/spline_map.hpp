@@ -65,7 +65,7 @@ class SplineMap {
       require_non_negative(extent, name, "upper - lower [m] must be >= 0");
       const S n = std::ceil(extent / w_) + S(3);  // one more on either side for the splines
       nodes *= n;
-      if (!(nodes <= S(1e7L)))
+      if (!(nodes <= S(1e7L)))  // chosen: bounds the memory
         fail(name, "spacing [m] asks for more than 10 million nodes", static_cast<double>(w_));
       count_[static_cast<std::size_t>(k)] = static_cast<std::size_t>(n);
     }

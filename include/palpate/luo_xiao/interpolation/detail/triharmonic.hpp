@@ -150,7 +150,7 @@ class TriharmonicSpline {
       const auto most_distant = std::max_element(
           left.begin(), left.end(),
           [](const Vec3<double>& a, const Vec3<double>& b) { return a.squaredNorm() < b.squaredNorm(); });
-      if (!(most_distant->norm() > 1e-6)) break;
+      if (!(most_distant->norm() > 1e-6)) break;  // of the sites' extent, see above; chosen
       const Vec3<double> axis = most_distant->normalized();
       axes_.row(rank++) = axis.transpose();
       for (Vec3<double>& r : left) r -= axis * axis.dot(r);
