@@ -40,7 +40,7 @@ inline palpate::MeshData<double> refined(palpate::MeshData<double> mesh, std::si
 }
 
 /// Per triangle its corners, the last twice (a quadrilateral of two rows, for gnuplot): number of the body,
-/// rest place and displacement [mm], length of the displacement by the tool's way.
+/// rest position and displacement [mm], the displacement's length over that of the tool's.
 inline void draw_bodies(std::FILE* to) {
   using V = palpate::Vec3<double>;
   struct Press {

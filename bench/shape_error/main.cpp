@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 
 /// @file Where on the surface a deformed shape is wrong: the library's closed-form and solved fields against
-/// nonlinear finite elements (truth/data), a stuck patch pressed 4 mm deep. shape_error.csv: relative L2
-/// error; shape_error.tsv beside it, for the plot: per vertex its place, the reference's displacement and the
-/// model's [mm]. bodies.tsv: bodies that have no reference.
+/// nonlinear finite elements (truth/data), a bonded patch pressed 4 mm deep. shape_error.csv: relative L2
+/// error; shape_error.tsv beside it, for the plot: per vertex its position, the reference's displacement and
+/// the model's [mm]. bodies.tsv: bodies that have no reference.
 
 #include "scenes.hpp"
 #include "shape_error/bodies.hpp"

@@ -4,7 +4,7 @@
 /// per tick of each stage, and its share of the whole.
 ///
 /// skeleton_share, skeleton_release, prepare and weights are called on their own with a tick's input. write
-/// is the tick without normals less those four: the field, the vertices' places and the box around them.
+/// is the tick without normals less those four: the field, the vertices' positions and the box around them.
 /// normals is the tick with normals less the one without. Medians over the ticks; a stage too short for the
 /// clock is repeated.
 

@@ -103,7 +103,8 @@ inline palpate::MeshData<double> read_obj(const std::string& text) {
   return mesh;
 }
 
-/// A patch of the surface that is moved by depth * factor * direction, and turned about its position by depth
+/// A patch of the surface that is moved by depth * factor * direction, and rotated about its position by
+/// depth
 /// * turn.
 struct Patch {
   V position, normal, direction;  ///< normal: outward

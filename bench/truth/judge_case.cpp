@@ -7,7 +7,7 @@
 /// CASE_DIR holds vertices.csv, displacement.csv and force.csv, plain or .gz; `linear`:
 /// displacement_linear.csv, force_linear.csv. Displacement: relative L2 over the surface's area, largest
 /// error over largest displacement, and L2 beyond two patch radii. Force: difference of the vectors over the
-/// reference's |F|, of a patch that is turned only over |F| + |T|/a; torque, where both have one, over |T| +
+/// reference's |F|, of a patch that is rotated only over |F| + |T|/a; torque, where both have one, over |T| +
 /// a |F|. Depths that either side lacks are left out.
 
 #include "truth/case.hpp"

@@ -4,7 +4,7 @@
 ///
 ///     make_reference NAME CASE_DIR fineness     without arguments: the names
 ///
-/// Bonded flat punches on rubber, pressed by their depth and turned, or a frictionless ball. Needs gmsh as a
+/// Bonded flat punches on rubber, pressed by their depth and rotated, or a frictionless ball. Needs gmsh as a
 /// command. Writes what truth_cases reads into CASE_DIR: meta.json, surface.obj, vertices.csv,
 /// displacement.csv, displacement_linear.csv (small strain), force.csv, force_linear.csv, with the torques
 /// about the patches' middles, where they have moved to. Vertices: the elements' nodes on the surface.
@@ -223,7 +223,7 @@ struct File {
   FILE* file;
 };
 
-// 0 free, -1 held, k on patch k; by node.
+// 0 free, -1 fixed, k on patch k; by node.
 std::vector<int> regions(const Case& c, const Tetrahedra& mesh, const Surface& surface) {
   const double held = (c.body.kind == Body::ellipsoid ? c.body.held : 0) + 1e-6 * c.body.size.maxCoeff();
   std::vector<int> region(mesh.nodes.size(), 0);

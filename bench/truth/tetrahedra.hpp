@@ -2,7 +2,7 @@
 #pragma once
 
 /// @file A body meshed by gmsh for finite elements: curved ten-node tetrahedra, finest at the patches' edges
-/// and the held rim.
+/// and the fixed region's rim.
 ///
 /// Lengths in mm. A body with a plane of symmetry is meshed on its positive side only.
 
@@ -15,12 +15,12 @@
 
 namespace bench {
 
-/// Box and cylinder stand on y = 0, about the axis y, and are held there; the ellipsoid is centred, held at y
-/// <= held.
+/// Box and cylinder stand on y = 0, about the axis y, and are fixed there; the ellipsoid is centred, fixed at
+/// y <= held.
 struct Body {
   enum { box, cylinder, ellipsoid } kind;
   V size;           ///< box: edges; cylinder: radius, height, radius; ellipsoid: semi-axes [mm]
-  double held = 0;  ///< height up to which the surface is held [mm]
+  double held = 0;  ///< height up to which the surface is fixed [mm]
   bool half_x = false, half_z = false;  ///< x = 0, z = 0 is a plane of symmetry
 
   /// Its least extent [mm].
@@ -85,7 +85,7 @@ class GmshScript {
     script_ += text("Box(2) = {", list(low), ", ", list(V::Constant(2 * far_)), "};\n",
                     "BooleanIntersection(3) = {Volume{1}; Delete;}{Volume{2}; Delete;};\n");
   }
-  // So that the mesh follows the edges of patches and of what is held, balls and a slab cut the body.
+  // So that the mesh follows the edges of patches and of the fixed region, balls and a slab cut the body.
   void cut(const std::vector<Patch>& patches) {
     script_ += "body() = Volume{:};\n";
     int tag = 10;
@@ -120,7 +120,7 @@ class GmshScript {
     const std::string along = text("sqrt(abs(", x, "^2 + ", y, "^2 + ", z, "^2 - ", h, "^2))");
     return text("sqrt((", along, " - ", p.radius, ")^2 + ", h, "^2)");
   }
-  // Fine at the rim of what is held; then the least of all sizes.
+  // Fine at the rim of the fixed region; then the least of all sizes.
   void add_sizes_of_body() {
     const V& s = body_.size;
     const double rim = body_.smallest() / 30;

@@ -273,7 +273,7 @@ inline void shape(int order, const std::array<double, 4>& b, std::array<double, 
   }
 }
 
-/// Display vertices held by the tetrahedra: nodes and weights of the element that contains or is nearest to
+/// Display vertices bound to the tetrahedra: nodes and weights of the element that contains or is nearest to
 /// each.
 class Embedding {
  public:

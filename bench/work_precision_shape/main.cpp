@@ -3,12 +3,12 @@
 /// @file Run time against error of the deformed shape, against nonlinear finite elements (truth/data): what
 /// the library ships ("palpate ...") and baselines that a user might pick instead.
 ///
-/// A stuck patch goes straight down, 20 ticks per millimetre, to 8 mm. time_us is the mean tick's processor
+/// A bonded patch goes straight down, 20 ticks per millimetre, to 8 mm. time_us is the mean tick's processor
 /// time (so that others on the machine count little), display included (1,792 and 1,954 vertices); vertices
 /// are those that the model computes with. Errors are relative, means over depths of 1, 2, 4 and 8 mm;
 /// force_error_rms is over the same depths.
 ///
-/// In the baselines' favour: the finite elements and the springs know the contact's place at set-up, their
+/// In the baselines' favour: the finite elements and the springs know the contact's position at set-up, their
 /// meshes are fitted to the patch, and the springs' stiffness is fitted to the first depth's force. Their
 /// display vertices within the patch take the tool's displacement.
 

@@ -8,7 +8,7 @@
 /// A host is a type with
 ///     explicit Host(const MeshData<S>& mesh);         // builds its tree
 ///     auto tree();                                    // the CandidateTree over it
-///     void move(const std::vector<Vec3<S>>& places);  // refits it to a deformed mesh
+///     void move(const std::vector<Vec3<S>>& positions);  // refits it to a deformed mesh
 
 #include "support/check.hpp"
 #include "support/meshes.hpp"
@@ -148,7 +148,7 @@ class CandidateTreeSuite {
       chord = (std::max)(chord, std::abs(egg.closest(middle).distance));
     }
     Host host(mesh.data());
-    // Twice: between vertices the middle of a triangle need not be the farthest place.
+    // Twice: between vertices the middle of a triangle need not be the farthest point.
     const CandidatesFrom theirs(egg, host.tree(), 2 * chord);
     static_assert(HasPenetrationBatch<Ellipsoid<S>> && HasPenetrationBatch<decltype(theirs)>);
     require_equal(compare(egg, theirs, ball(mesh), mesh, 120));

@@ -91,7 +91,7 @@ struct ForceLawSuite {
     CHECK(law.stiffness(nan) == S(0));
     CHECK(law.energy(nan) == S(0));
     CHECK(law.depth(nan) == S(0));
-    // Infinitely deep: held at the maximum where there is one, else not finite, which the solver catches.
+    // Infinitely deep: kept at the maximum where there is one, else not finite, which the solver catches.
     const S deepest = law.force(infinity);
     CHECK((!is_finite(deepest) || deepest == law.force(law.max_depth())));
     CHECK((!is_finite(law.depth(infinity)) || law.depth(infinity) == law.max_depth()));

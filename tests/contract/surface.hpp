@@ -165,8 +165,8 @@ class SurfaceSuite {
         CHECK_ABSOLUTE(in.depth[i], one.depth, few);
         if (!(one.depth > few)) continue;  // outside, or on the surface to rounding
         const Vec3<S> gradient(in.gradient_x[i], in.gradient_y[i], in.gradient_z[i]);
-        // Over an edge directions turn by as much as the place moves over the depth, times a number of order
-        // 1.
+        // Over an edge directions turn by as much as the position moves over the depth, times a number of
+        // order 1.
         CHECK((gradient - one.gradient).norm() <=
               S(4) * few / (std::min)(one.depth, body_.reach()) + test::ulps<S>(16));
       }

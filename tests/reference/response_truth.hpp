@@ -3,8 +3,8 @@
 
 /// @file Surface displacement by geometrically nonlinear finite elements (neo-Hookean, nu = 0.49), every few
 /// vertices of the reference cases ellipsoid_top (ellipsoid 60 x 40 x 40 mm, E = 1.5 MPa, fixed below y = -36
-/// mm, stuck patch of 5 mm at the top) and cube (cube of 100 mm, E = 1 MPa, fixed at its base, bonded disc of
-/// 10 mm on the top face), both pressed 4 mm. Taylor-Hood tetrahedra, checked against CalculiX. Own error:
+/// mm, bonded patch of 5 mm at the top) and cube (cube of 100 mm, E = 1 MPa, fixed at its base, bonded disc
+/// of 10 mm on the top face), both pressed 4 mm. Taylor-Hood tetrahedra, checked against CalculiX. Own error:
 /// displacement 1.4-1.8 %, force 1.4 % too high. And ball_ellipsoid's force: a frictionless ball of 15 mm
 /// pressed on the top of the same ellipsoid, the contact growing; own error 0.1 to 1 %, too high, largest
 /// where the contact is small. And such a ball on a slab of 120 x 30 x 100 mm, E = 1 MPa, fixed at its base

@@ -95,8 +95,9 @@ TEST_CASE("a rate term does not see regions merge: at constant speed the force f
   for (int i = 0; i < 300; ++i) {  // 1 mm/s inwards, at 1 kHz
     const Pose<double> X = at(0, 1e-6 * (i + 0.5));
     const double F = solver.tick(X, 1e-3).wrench.force.y(), F0 = still.tick(X).wrench.force.y();
-    if (i == 0) continue;                                 // without a pose before there is no rate
-    CHECK_RELATIVE(F, F0 * (1 + 1.5 * 10 * 1e-3), 1e-9);  // the rate is a difference of places: 1e-17 / 1e-6
+    if (i == 0) continue;  // without a pose before there is no rate
+    CHECK_RELATIVE(F, F0 * (1 + 1.5 * 10 * 1e-3),
+                   1e-9);  // the rate is a difference of positions: 1e-17 / 1e-6
   }
 }
 

@@ -87,7 +87,7 @@ void roll_over(const test::ResponseBody& body) {
   }
   MESSAGE(std::string(body.name), ": force per half-space's ", stiffest, ", largest jump of force ",
           force_jump, ", of field ", field_jump, ", largest |u| / d ", most);
-  // What a body takes from d_H is held at half of it, and a tenth of d is gained at most: (2 x 1.1)^1.5 =
+  // What a body takes from d_H is bounded by half of it, and a tenth of d is gained at most: (2 x 1.1)^1.5 =
   // 3.26; finite strain, at nu = 0.3, and the force across add up to a quarter.
   CHECK(stiffest < 4.1);
   // As for patches (response_bodies_test.cpp).

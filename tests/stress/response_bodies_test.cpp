@@ -2,8 +2,8 @@
 
 // Bodies that no closed form knows: concave, thin, in two pieces, with edges. No reference: what is checked
 // is that the answer is finite and bounded by theory, that it does not jump while the contact wanders (a
-// third of them with the tool turned), and that twice the solve vertices change it by little. PALPATE_PATHS:
-// paths over each body; docs/accuracy.md has the figures of 10,000.
+// third of them with the tool rotated), and that twice the vertices of the boundary element mesh change it by
+// little. PALPATE_PATHS: paths over each body; docs/accuracy.md has the figures of 10,000.
 
 #include <palpate/response/response_contact.hpp>
 
@@ -87,9 +87,8 @@ void try_body(const test::ResponseBody& body, double convergence) {
       tick.solve(both.data(), count, F, T);
       const double way = way_of(both[0]),
                    stiff = mu * way / flat_punch_compliance(a, body.nu).normal;  // half-space, at most
-      const double moved =
-          ((one.place - from[0]).norm() + (two.place - from[1]).norm()) / (std::min)(h, a) +
-          (one.normal - turned[0]).norm() + (two.normal - turned[1]).norm();
+      const double moved = ((one.place - from[0]).norm() + (two.place - from[1]).norm()) / (std::min)(h, a) +
+                           (one.normal - turned[0]).norm() + (two.normal - turned[1]).norm();
       double steep = 0;
       for (std::size_t c = 0; c < count; ++c) {
         REQUIRE(is_finite(F[c]));

@@ -121,8 +121,8 @@ template <Real S>
   return angle > 3.14159265358979 ? -least : least;
 }
 
-/// A random place in the mesh's box grown by half; every fourth on the surface or within 1e-3 of the size of
-/// it.
+/// A random position in the mesh's box grown by half; every fourth on the surface or within 1e-3 of the size
+/// of it.
 template <Real S>
 [[nodiscard]] inline Vec3<S> random_place(const MeshData<S>& mesh, std::mt19937_64& random) {
   std::uniform_real_distribution<S> unit(S(0), S(1));

@@ -74,7 +74,7 @@ template <class Filled>
   return mesh;
 }
 
-/// A body, held where y [m] is at most `held_below`.
+/// A body, fixed where y [m] is at most `held_below`.
 struct ResponseBody {
   const char* name;
   MeshData<double> mesh;

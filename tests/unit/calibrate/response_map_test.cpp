@@ -71,7 +71,7 @@ TEST_CASE("a ball on a fitted map feels what the field answers to a contact that
   const double ball = 0.012, depth = 0.006;
   const auto fitted =
       ball_response_map(field, body, {.radius = ball, .depth = depth, .spacing = field.mesh().length / 3});
-  // The worst is within the fixed region, where compliances are held and a curve has a kink.
+  // The worst is within the fixed region, where compliances are bounded and a curve has a kink.
   CHECK(fitted.worst_rms < 0.2);  // 0.17 met
   ContactSolver<Ellipsoid<double>, HertzMap<double>> solver({body, {}, fitted.map, {}, {}});
   ResponseTick<1> tick(field);

@@ -11,7 +11,7 @@ using namespace palpate;
 
 namespace {
 
-/// Points 1 mm apart on a line; the tracker joins direct neighbours only. Points go by their place on the
+/// Points 1 mm apart on a line; the tracker joins direct neighbours only. Points go by their position on the
 /// line, which the tool's own order may not follow.
 struct Line {
   explicit Line(int n)
@@ -47,7 +47,7 @@ struct Line {
 
   ToolPoints<double> tool;
   RegionTracker<double, 4> tracker;
-  std::vector<std::uint32_t> index;  // of the point at a place
+  std::vector<std::uint32_t> index;  // of the point at a position
   std::vector<std::uint32_t> touching;
 };
 

@@ -226,7 +226,7 @@ TEST_CASE_TEMPLATE("tool points: resampling keeps the area and the spacing", S, 
       if (!(nearest >= S(0.7499L) * spacing && nearest <= S(1.501L) * spacing))
         FAIL("nearest ", nearest, " at ", i);
     }
-    // No place of the surface is further than 1.5 spacings from a point: looked for at the mesh's own
+    // No point of the surface is further than 1.5 spacings from a point: looked for at the mesh's own
     // vertices.
     for (const Vec3<S>& v : mesh->vertices()) {
       S nearest = S(1);

@@ -94,7 +94,7 @@ TEST_CASE_TEMPLATE(
     if (cap(mesh.vertices[v])) CHECK(now == rest);
     const Vec3<float> n(out[6 * v + 3], out[6 * v + 4], out[6 * v + 5]);
     CHECK(std::abs(n.norm() - 1) < 1e-5f);
-    // The vertex at the top: the flat disc's own field, on a bent surface, within a twentieth.
+    // The vertex at the top: the flat punch's own field, on a curved surface, within a twentieth.
     if (mesh.vertices[v].y() > S(0.03999)) CHECK((u - contacts[0].displacement).norm() < S(1e-4));
   }
   CHECK(model.write(std::span(contacts), buffer).vertices == 0);
@@ -120,7 +120,7 @@ TEST_CASE("half-spaces: linear in D, and lengths scale") {
   ten.write({pressed<double>(V(0, 0.4, 0), V::UnitY(), V(0, -0.02, 0), 0.05)});
   CHECK_RELATIVE(two.model.forces()[0].norm(), 2 * one.model.forces()[0].norm(), 1e-12L);
   CHECK_RELATIVE(ten.model.forces()[0].norm(), 100 * one.model.forces()[0].norm(),
-                 1e-9L);  // mesh places in float
+                 1e-9L);  // mesh positions in float
   for (std::size_t v = 0; v < one.position.size(); ++v) {
     // Places are kept in float: 4e-9 m at 0.06 m, and ten times that.
     CHECK((two.u(v) - 2 * one.u(v)).norm() < 4e-8);

@@ -140,7 +140,7 @@ TEST_CASE("deformed surface: many points at once are as each of them") {
   const auto compare = [&](const auto& body) {
     int below = 0, apart = 0;
     for (int k = 0; k < 2000; ++k) {
-      // A leaf's worth around a place near the surface, closer together than its triangles or not; some on
+      // A leaf's worth around a point near the surface, closer together than its triangles or not; some on
       // vertices.
       const V middle =
           V(uniform(random), 1, uniform(random)).normalized() * (radius + 0.003 * uniform(random));
@@ -156,7 +156,7 @@ TEST_CASE("deformed surface: many points at once are as each of them") {
       body.penetration(x, in);
       for (std::size_t i = 0; i < batch_size; ++i) {
         const auto one = body.penetration(V(x.x[i], x.y[i], x.z[i]));
-        // Sums over the same triangles in another order; where a place is on a triangle's edge, either may
+        // Sums over the same triangles in another order; where a point is on a triangle's edge, either may
         // count.
         REQUIRE(std::abs(in.depth[i] - one.depth) <= 1e-14);
         if (!(one.depth > 1e-6)) continue;

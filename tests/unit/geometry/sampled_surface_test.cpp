@@ -122,7 +122,7 @@ TEST_CASE_TEMPLATE("sampled surface: many points at once are as one by one", S, 
     body.penetration(x, in);
     for (std::size_t i = 0; i < batch_size; ++i) {
       const Penetration<S> one = body.penetration(Vec3<S>(x.x[i], x.y[i], x.z[i]));
-      // Sums of 27 samples in float, and in S = float a place rounded to a few parts in 1e5 of a spacing.
+      // Sums of 27 samples in float, and in S = float a position rounded to a few parts in 1e5 of a spacing.
       const long double rounding = test::ulps<float>(64) * static_cast<long double>(half.maxCoeff());
       CHECK_ABSOLUTE(in.depth[i], one.depth, rounding);
       if (!(static_cast<long double>(one.depth) > rounding)) {

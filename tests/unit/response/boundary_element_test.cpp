@@ -64,7 +64,7 @@ TEST_CASE("bar clamped at its end and pulled, nu = 0: the exact linear displacem
   bem.solve(u);
   for (std::size_t v = 0; v < m.vertices.size(); ++v) {
     const V exact =
-        m.fixed_vertex[v] ? V(0, -2, 0) : V(0, m.vertices[v].y(), 0);  // at held vertices: the traction
+        m.fixed_vertex[v] ? V(0, -2, 0) : V(0, m.vertices[v].y(), 0);  // at fixed vertices: the traction
     CHECK_ABSOLUTE((u.block<3, 1>(3 * Eigen::Index(v), 0) - exact).norm(), 0.0,
                    m.fixed_vertex[v] ? 0.05 : 5e-3);  // quadrature; traction is rougher
   }
@@ -151,7 +151,7 @@ TEST_CASE(
       A += turned.squaredNorm() * line * line.transpose();
       b += turned.dot(u.block<3, 1>(3 * Eigen::Index(v), 1)) * line;
     }
-    // Force 1, moment of the twist 1/6: the polar moment of a unit square. Square: J = 0.140577.
+    // Force 1, moment of the torsional couple 1/6: the polar moment of a unit square. Square: J = 0.140577.
     const double tip = length * length * length / (3 * E / 12) + 1.2 * length / mu;
     const Eigen::Vector2d angle = A.inverse() * b;
     return Errors{deflection / count / tip - 1, angle[1] / ((1.0 / 6) / (0.140577 * mu)) - 1};

@@ -25,7 +25,8 @@ Square<N> turned(std::mt19937& random) {
   return Q;
 }
 
-// Largest difference between what is held and the eigenvalues held one by one, over the largest eigenvalue.
+// Largest difference between what is bounded and the eigenvalues bounded one by one, over the largest
+// eigenvalue.
 template <int N>
 double worst_of_known(int tries) {
   std::mt19937 random(N);

@@ -63,7 +63,7 @@ TEST_CASE("response field as a deformation model: rest, patch, normals, box, not
       ++shown;
     }
     if (mesh.vertices[v].y() < -0.036)
-      CHECK_ABSOLUTE(double(at.y()), mesh.vertices[v].y(), 1e-3 * 0.004);  // held
+      CHECK_ABSOLUTE(double(at.y()), mesh.vertices[v].y(), 1e-3 * 0.004);  // fixed
   }
   CHECK(shown > 3);
   CHECK(low.cast<double>() == moved.lower);

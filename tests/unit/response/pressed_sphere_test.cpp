@@ -77,10 +77,10 @@ TEST_CASE("a ball: absurd curvatures and depths end in bounded forces and fields
       SphereContact<double> in = on_flank(depth);
       in.curvature = curvature;
       const auto out = tick.solve(in);
-      CHECK(out.across.norm() <= 0.25 * (1 + 1e-12) * out.force);  // the bound it is held at, rounded
+      CHECK(out.across.norm() <= 0.25 * (1 + 1e-12) * out.force);  // its bound, rounded
       CHECK((is_finite(out.force) && out.force >= 0 && is_finite(out.stiffness) && out.radius >= 0));
       tick.displace(display, u.data(), 3);
-      // The field is held at 4 d on the boundary element mesh's vertices, which are all that are drawn.
+      // The field is bounded by 4 d on the boundary element mesh's vertices, which are all that are drawn.
       for (const double x : u) CHECK(std::abs(x) < 4.5 * depth);
     }
   CHECK(tick.solve(on_flank(std::numeric_limits<double>::quiet_NaN())).force == 0);

@@ -156,7 +156,7 @@ TEST_CASE("bad input: reported at set-up, zero in a tick") {
   CHECK_THROWS_AS(ResponseField(mesh, base, {.E = 1, .nu = 0.6}), SetupError);
   CHECK_THROWS_AS(ResponseField(mesh, [](const V&) { return false; }, {.E = 1}), SetupError);
   CHECK_THROWS_AS(ResponseField(mesh, [](const V&) { return true; }, {.E = 1}), SetupError);
-  MeshData<double> two = mesh;  // a second box, held by nothing
+  MeshData<double> two = mesh;  // a second box, fixed nowhere
   for (const V& p : mesh.vertices) two.vertices.push_back(p + V(0, 3, 0));
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   for (const auto& t : mesh.triangles) two.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});

@@ -120,5 +120,5 @@ TEST_CASE("a translation turns nothing, nor does a near field alone; on its patc
   CHECK(at(field, q, v) == free);
   correction.find(whole.data(), none.data(), Contacts(x + V(0, 0.0125, 0))(1), {}, q.data());
   CHECK((at(field, q, v) - 0.5 * free).norm() <
-        1e-5 * free.norm());  // places of 0.1 m in float, over 1 cm: 2e-7 met
+        1e-5 * free.norm());  // positions of 0.1 m in float, over 1 cm: 2e-7 met
 }

@@ -9,7 +9,7 @@ using namespace palpate;
 using V = Vec3<double>;
 using Contact = ResponseContact<double>;
 
-// Cube of 60 mm, held at its base.
+// Cube of 60 mm, fixed at its base.
 const ResponseField& cube() {
   static const ResponseField field(test::box_mesh(V(0.06, 0.06, 0.06), 8),
                                    [](const V& p) { return p.y() <= 1e-6; },
@@ -58,8 +58,8 @@ TEST_CASE(
         const Contact both[2] = {first, pressed(0.036 + radius, 0.004, V(part * way))};
         return answer(both, 2);
       };
-      // Of d, and of the force for it. Sums in float: 4e-7 met. A contact that held its place at once would
-      // be at 0.1.
+      // Of d, and of the force for it. Sums in float: 4e-7 met. A contact that kept its position at once
+      // would be at 0.1.
       CHECK(with(1e-9).apart(alone, d) < 1e-5);
       const auto largest_step = [&](int n) {
         double step = 0;
@@ -82,7 +82,8 @@ TEST_CASE("contacts that are alike hold each other as ever") {
   const V d(0, -1e-3, 0);
   const Contact both[2] = {pressed(0.02, 0.004, d), pressed(0.0201, 0.004, d)};
   const Answer one = answer(both, 1), two = answer(both, 2);
-  // At one place they share one contact's force, less the share of the mean over two patches instead of one.
+  // At one position they share one contact's force, less the share of the mean over two patches instead of
+  // one.
   CHECK((two.force - two.second).norm() < 0.1 * two.force.norm());
   CHECK((two.force + two.second).norm() > 0.9 * one.force.norm());
 }

@@ -16,8 +16,9 @@ TEST_CASE("sphere: Hertz for shallow contact, series compliance softens, stiffne
              down = sphere_force(4e-3 - 1e-7, R, modulus, 5e-6);
   CHECK(f.force < sphere_force(4e-3, R, modulus, 0.0).force);
   CHECK_RELATIVE(f.stiffness, (up.force - down.force) / 2e-7, 1e-6);  // central difference
-  // What a stiff layer takes from the depth; held at half of it, where the force is that of twice the depth.
-  // Newton's last step is up to 4 epsilon of the radius, of which the force is a power of 3 or a little more.
+  // What a stiff layer takes from the depth; bounded by half of it, where the force is that of twice the
+  // depth. Newton's last step is up to 4 epsilon of the radius, of which the force is a power of 3 or a
+  // little more.
   const double own = sphere_force(4e-3, R, modulus, 0.0).force,
                stiff = sphere_force(4e-3, R, modulus, -5e-6).force;
   CHECK_RELATIVE(sphere_force(4e-3 + 5e-6 * stiff, R, modulus, 0.0).force, stiff, test::ulps<double>(64));

@@ -125,8 +125,8 @@ TEST_CASE("what tilts and twists do, and what forces do to them, is the same: re
         largest = (std::max)(largest, std::abs(turned.force[way] * d - moved.torque[axis] * angle) / all);
       }
     MESSAGE("radius ", radius, ": ", largest);
-    // A patch that is wide for its mesh is held by five loads, which move it, too, but are left out where w
-    // twists it, and which know the stuck disc's own loads in the mean only.
+    // A patch that is wide for its mesh is bonded by five loads, which move it, too, but are left out where w
+    // twists it, and which know the bonded flat punch's own loads in the mean only.
     CHECK(largest < (radius < 0.01 ? 0.001 : 0.04));
   }
 }

@@ -279,7 +279,8 @@ TEST_CASE("turning and reordering the regions; a region on another, and on an ex
     for (const auto& load : close.loads) {
       for (const auto& beam : load.beams) sum += beam.force;
     }
-    // Beams between contacts are held at 1/1000 of the lengths, so their stiffness loses at most 9 digits.
+    // Beams between contacts are at least 1/1000 of the lengths long, so their stiffness loses at most 9
+    // digits.
     CHECK((sum - contacts[0].force - contacts[1].force - contacts[2].force).norm() <= 1e-6);
   }
 }
