@@ -1,5 +1,7 @@
-// SPDX-License-Identifier: MIT Mesh files that are wrong in one way each: the example's reader names what,
-// where and how many; --repair mends the harmless ones.
+// SPDX-License-Identifier: MIT
+
+// Mesh files that are wrong in one way each: the example's reader names what, where and how many; --repair
+// mends the harmless ones.
 
 #include "touch/mesh_file.hpp"
 

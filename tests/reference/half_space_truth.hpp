@@ -4,7 +4,7 @@
 /// @file What geometrically nonlinear finite elements (neo-Hookean, nu = 0.49) have beyond linear ones around
 /// a bonded flat punch of radius a on a block of 60 x 30 x 60 a, fixed at its base:
 /// `bench/truth/make_reference.cpp`, half_space and half_space_askew, elements of a/16 and a/12 at the disc's
-/// edge. Means over rings of the top around the disc; in parts of the way d that the disc is pressed.
+/// edge. Means over rings of the top around the disc; in parts of the disc's displacement d.
 
 namespace palpate::test {
 

@@ -1,5 +1,8 @@
-// SPDX-License-Identifier: MIT Continuity in time: while a contact wanders over faces, edges and corners, no
-// vertex moves further in one tick than a stated factor times the contact's step.
+// SPDX-License-Identifier: MIT
+
+// Continuity in time: while a contact wanders over faces, edges and corners, no vertex moves further in one
+// tick than a stated factor times the contact's step.
+
 #include "contract/interpolation.hpp"
 
 #include <palpate/luo_xiao/interpolation/linear.hpp>

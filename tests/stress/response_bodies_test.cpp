@@ -98,7 +98,7 @@ void try_body(const test::ResponseBody& body, double convergence) {
         last[c] = F[c];
         last_torque[c] = T[c];
       }
-      // A fast change over a small way may be a jump: looked at closely.
+      // A fast change over a small displacement may be a jump: examined in small steps.
       if (i > 0 && moved < 0.2 && steep > 0.05) {
         const auto change_of_force = [&](const Both& l, const Both& r) {
           V Fl[2], Fr[2], Tl[2], Tr[2];

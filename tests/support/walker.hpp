@@ -46,7 +46,7 @@ class Walker {
   Vec3<double> heading_;
 };
 
-/// What is left of the change from l to r in the steepest 16,384th of the way: a jump keeps all of it.
+/// What is left of the change from l to r in the steepest 16,384th of the path: a jump keeps all of it.
 template <class Contact, class Middle, class Apart>
 [[nodiscard]] double left_over(Contact l, Contact r, const Middle& middle, const Apart& apart) {
   for (int i = 0; i < 14; ++i) {

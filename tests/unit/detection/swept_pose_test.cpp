@@ -59,8 +59,8 @@ TEST_CASE_TEMPLATE("swept pose: straight at a plate it stops at L, on the side i
   (void)sweep.advance(tip, plate, at<S>(S(0), S(0.1), S(0)));
   auto held = sweep.advance(tip, plate, at<S>(S(0), S(-0.3), S(0)));
   CHECK(has(held.status, Status::held_back));
-  // Conservative steps add up to the way to L exactly; rounding is that of coordinates of 0.1 m, on a look
-  // each.
+  // Conservative steps add up to the path to L exactly; rounding is that of coordinates of 0.1 m, once a
+  // query.
   CHECK_ABSOLUTE(held.pose.translation.y(), S(0.001) - L, test::ulps<S>(64) * 0.1L);
   held = sweep.advance(tip, plate, at<S>(S(0), S(0.0009), S(0)));
   CHECK(held.status == Status::ok);

@@ -1,6 +1,9 @@
-// SPDX-License-Identifier: MIT Two threads hand values over at full speed. The thread sanitizer (preset tsan)
-// proves here that the hand-over has no data race, and relaxed.cmake shows that it would see one. Without the
-// sanitizer a torn value shows in the checksum.
+// SPDX-License-Identifier: MIT
+
+// Two threads hand values over at full speed. The thread sanitizer (preset tsan) proves here that the
+// hand-over has no data race, and relaxed.cmake shows that it would see one. Without the sanitizer a torn
+// value shows in the checksum.
+
 #include <palpate/device/spsc_ring.hpp>
 #include <palpate/device/triple_buffer.hpp>
 

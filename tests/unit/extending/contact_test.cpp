@@ -1,6 +1,8 @@
-// SPDX-License-Identifier: MIT Policies that a user wrote, as docs/extending.md shows them. Each offers what
-// its concept asks for and no more; the solvers here are made of nothing else, so what a concept forgets does
-// not compile.
+// SPDX-License-Identifier: MIT
+
+// Policies that a user wrote, as docs/extending.md shows them. Each offers what its concept asks for and no
+// more; the solvers here are made of nothing else, so what a concept forgets does not compile.
+
 #include <palpate/detection/candidates_from.hpp>
 #include <palpate/solver/contact_solver.hpp>
 

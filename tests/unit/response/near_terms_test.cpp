@@ -10,7 +10,7 @@ using namespace palpate;
 using V = Vec3<double>;
 
 // What a tick draws beyond small strain at `points` on a block of 60 x 30 x 60 patch radii, in parts of the
-// way.
+// patch's displacement.
 class HalfSpace {
  public:
   HalfSpace()

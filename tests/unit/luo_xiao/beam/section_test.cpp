@@ -1,5 +1,8 @@
-// SPDX-License-Identifier: MIT Exact flexure stresses: against the printed closed forms, and as a solution of
-// three-dimensional elasticity.
+// SPDX-License-Identifier: MIT
+
+// Exact flexure stresses: against the printed closed forms, and as a solution of three-dimensional
+// elasticity.
+
 #include <palpate/luo_xiao/beam/rectangular_section.hpp>
 #include <palpate/luo_xiao/beam/section.hpp>
 
