@@ -116,11 +116,9 @@ class Simd {
     copy_from(from);
   }
   PALPATE_INLINE void copy_from(const T* from) noexcept {
-      PALPATE_EACH_REGISTER((*this),
-                            load_native<Register>(from + k * register_size<Register>))} PALPATE_INLINE
-      void copy_to(T* to) const noexcept {
-    std::memcpy(to, native, sizeof native);
+    PALPATE_EACH_REGISTER((*this), load_native<Register>(from + k * register_size<Register>));
   }
+  PALPATE_INLINE void copy_to(T* to) const noexcept { std::memcpy(to, native, sizeof native); }
 
   [[nodiscard]] PALPATE_INLINE T operator[](std::size_t i) const noexcept {
     if constexpr (std::is_arithmetic_v<Register>)

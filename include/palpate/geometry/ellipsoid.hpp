@@ -78,11 +78,7 @@ class Ellipsoid {
     const Vec3<S> r = x - p_.centre;
     const S g = r.cwiseProduct(inverse_).squaredNorm();
     if (!is_finite(g) || !(g < S(1))) return {S(0), Vec3<S>::Zero()};
-    S depth;
-    detail::SimdVec3<S> n;
-    if (near_surface<S>({r.x(), r.y(), r.z()}, depth, n)) return {depth, Vec3<S>(n.x, n.y, n.z)};
-    const Foot foot = solve(r);
-    return {-foot.distance, foot.normal};
+    return penetration_inside(r);
   }
 
   /// The same of a batch.
@@ -179,6 +175,15 @@ class Ellipsoid {
     Vec3<S> normal;
     S distance;
   };
+
+  // A function of its own: a tick out of reach does not set up the registers of one in contact.
+  [[nodiscard]] Penetration<S> penetration_inside(const Vec3<S>& r) const noexcept {
+    S depth;
+    detail::SimdVec3<S> n;
+    if (near_surface<S>({r.x(), r.y(), r.z()}, depth, n)) return {depth, Vec3<S>(n.x, n.y, n.z)};
+    const Foot foot = solve(r);
+    return {-foot.distance, foot.normal};
+  }
 
   // Penetration near the surface of points at r from the centre, 0 outside. False where one is too deep for
   // this or not finite: then nothing is said of any. As solve() with s = w - 1 and q_i = z_i / (1 + s j_i),
