@@ -19,6 +19,7 @@
 /// [johnson1985] ch. 4.
 
 #include <palpate/core/scalar.hpp>
+#include <palpate/response/tick/constants.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -44,6 +45,7 @@ template <Real S>
     S load, by_load, depth, by_depth;  // F / R^2, d / R, and their derivatives by s = a / R
   };
   const S target = depth / R, series = compliance * R;
+  constexpr S min_share = S(-detail::tick::max_body_share);
   const auto at = [&](S s) {
     const S l = std::log((S(1) + s) / (S(1) - s)), q = S(1) / (S(1) - s * s), s2 = s * s, s3 = s2 * s;
     const S own = S(0.5) * s * l - less * s * s3 / S(3),
@@ -56,12 +58,13 @@ template <Real S>
     v.by_load = modulus * (s * l + (s2 + S(1)) * q - S(1) - S(8) / S(3) * less * s2 * s2);
     v.depth = own * (S(1) + softening * own);
     v.by_depth = by_own * (S(1) + S(2) * softening * own);
-    const bool bounded = series * v.load < S(-0.5) * v.depth;
-    v.depth += bounded ? S(-0.5) * v.depth : series * v.load;
-    v.by_depth += bounded ? S(-0.5) * v.by_depth : series * v.by_load;
+    const bool bounded = series * v.load < min_share * v.depth;
+    v.depth += bounded ? min_share * v.depth : series * v.load;
+    v.by_depth += bounded ? min_share * v.by_depth : series * v.by_load;
     return v;
   };
-  S low = 0, high = S(0.95), s = (std::min)(std::sqrt(target), S(0.9));
+  // Newton's method in a bracket, from Hertz's a^2 = R d on; 2 to 6 steps are usual.
+  S low = 0, high = S(detail::tick::max_contact_radius), s = (std::min)(std::sqrt(target), S(0.9));
   for (int i = 0; i < 40; ++i) {
     const Value v = at(s);
     (v.depth > target ? high : low) = s;
