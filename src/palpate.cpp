@@ -7,6 +7,7 @@
 #endif
 
 #include <palpate/response/setup/load_mesh_impl.hpp>
+#include <palpate/response/setup/mid_edge_table_impl.hpp>
 #include <palpate/response/setup/patch_table_impl.hpp>
 #include <palpate/response/setup/response_display_impl.hpp>
 #include <palpate/response/setup/response_field_impl.hpp>

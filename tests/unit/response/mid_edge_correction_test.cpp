@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <palpate/response/response_contact.hpp>
 #include <palpate/response/setup/make_element_mesh.hpp>
+#include <palpate/response/setup/mid_edge_fit.hpp>
 #include <palpate/response/setup/quadrature.hpp>
 
 #include "support/check.hpp"

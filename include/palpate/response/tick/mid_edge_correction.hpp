@@ -8,6 +8,7 @@
 /// to an edge of the body, where linear display makes half of the error of first order. Far away the
 /// corrections are left out, and their mean is added to u_c instead.
 
+#include <palpate/core/simd_shuffle.hpp>
 #include <palpate/response/tick/mid_edge_table.hpp>
 #include <palpate/response/tick/stages.hpp>
 

@@ -4,12 +4,20 @@
 /// @file Corrections that make a linear field over a mesh quadratic: at the middles of edges, and at vertices
 /// in the mean. Made at set-up.
 
-#include <palpate/core/simd_shuffle.hpp>
-#include <palpate/response/setup/mid_edge_fit.hpp>
+#include <palpate/response/setup/element_mesh.hpp>
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <span>
+#include <utility>
+#include <vector>
 
 namespace palpate {
+
+namespace detail {
+class MidEdgeFit;
+}
 
 /// Corrections of a linear field, from the boundary element mesh alone: by edge, weights with b = sum weight
 /// u(vertex), how far u at the edge's middle lies from the mean of its ends (none where both ends are fixed);
@@ -32,28 +40,11 @@ class MidEdgeTable {
     [[nodiscard]] std::size_t memory() const noexcept {
       return begin.size() * sizeof(begin[0]) + weights.size() * sizeof(Weight);
     }
-    void push_back(const std::vector<detail::VertexWeight>& row) {
-      for (const auto& w : row) weights.push_back({w.vertex, static_cast<float>(w.weight)});
-      begin.push_back(static_cast<std::uint32_t>(weights.size()));
-    }
   };
   using Edges = std::array<std::uint32_t, 3>;  ///< from corner c to c + 1
 
   MidEdgeTable() = default;
-  MidEdgeTable(const ElementMesh& mesh, const detail::MidEdgeFit& fit) {
-    of_triangle_.resize(mesh.triangles.size());
-    std::vector<std::uint8_t> rests(fit.size());
-    for (std::size_t t = 0; t < of_triangle_.size(); ++t)
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::uint32_t e = of_triangle_[t][c] = fit.edge(t, c);
-        rests[e] =
-            mesh.fixed_vertex[mesh.triangles[t][c]] && mesh.fixed_vertex[mesh.triangles[t][(c + 1) % 3]];
-      }
-    for (std::size_t e = 0; e < fit.size(); ++e)
-      edge_rows_.push_back(rests[e] ? std::vector<detail::VertexWeight>{} : fit[e]);
-    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) vertex_rows_.push_back(fit.raise(v));
-    find_middles(mesh);
-  }
+  MidEdgeTable(const ElementMesh& mesh, const detail::MidEdgeFit& fit);
   /// From saved parts (save.hpp).
   MidEdgeTable(const ElementMesh& mesh, std::vector<Edges> of_triangle, Rows edge_rows, Rows vertex_rows)
       : of_triangle_(std::move(of_triangle)),
@@ -77,20 +68,7 @@ class MidEdgeTable {
   }
 
  private:
-  void find_middles(const ElementMesh& mesh) {
-    ends_.resize(edge_rows_.size());
-    for (std::size_t t = 0; t < of_triangle_.size(); ++t)
-      for (std::size_t c = 0; c < 3; ++c)
-        ends_[of_triangle_[t][c]] = {mesh.triangles[t][c], mesh.triangles[t][(c + 1) % 3]};
-    for (auto& list : middle_) list.assign(detail::padded<detail::Simd4>(edge_rows_.size()), 1e9f);
-    for (std::size_t e = 0; e < edge_rows_.size(); ++e) {
-      if (edge_rows_[e].empty()) continue;
-      Vec3<double> x = 0.5 * (mesh.vertices[ends_[e][0]] + mesh.vertices[ends_[e][1]]);
-      for (const Weight& w : edge_rows_[e]) x += double(w.weight) * mesh.vertices[w.vertex];
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        middle_[axis][e] = static_cast<float>(x[static_cast<Eigen::Index>(axis)]);
-    }
-  }
+  void find_middles(const ElementMesh& mesh);
 
   std::vector<Edges> of_triangle_;
   std::vector<std::array<std::uint32_t, 2>> ends_;
@@ -99,3 +77,7 @@ class MidEdgeTable {
 };
 
 }  // namespace palpate
+
+#ifndef PALPATE_COMPILED
+#include <palpate/response/setup/mid_edge_table_impl.hpp>
+#endif
