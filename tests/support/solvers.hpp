@@ -16,17 +16,17 @@ namespace palpate {
 #define PALPATE_TEST_SOLVER extern template class
 #endif
 PALPATE_TEST_SOLVER
-    ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SinglePoint>;
+ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SinglePoint>;
 PALPATE_TEST_SOLVER
-    ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<>>;
+ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<>>;
 PALPATE_TEST_SOLVER
-    ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4>>;
+ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4>>;
 PALPATE_TEST_SOLVER
-    ContactSolver<Ellipsoid<double>, DuffingForce<double>, PowerLawFriction<double>, SinglePoint>;
+ContactSolver<Ellipsoid<double>, DuffingForce<double>, PowerLawFriction<double>, SinglePoint>;
 PALPATE_TEST_SOLVER
-    ContactSolver<Ellipsoid<double>, DuffingForce<double>, PowerLawFriction<double>, SingleRegion<>>;
+ContactSolver<Ellipsoid<double>, DuffingForce<double>, PowerLawFriction<double>, SingleRegion<>>;
 PALPATE_TEST_SOLVER
-    ContactSolver<Ellipsoid<double>, DuffingForce<double>, PowerLawFriction<double>, Regions<4>>;
+ContactSolver<Ellipsoid<double>, DuffingForce<double>, PowerLawFriction<double>, Regions<4>>;
 PALPATE_TEST_SOLVER ContactSolver<Box<double>, DuffingForce<double>, PowerLawFriction<double>, Regions<4>>;
 #undef PALPATE_TEST_SOLVER
 
