@@ -150,7 +150,7 @@ void try_body(const test::ResponseBody& body, double convergence) {
           most_linear = (std::max)(most_linear, V(u[3 * k], u[3 * k + 1], u[3 * k + 2]).norm() / way);
         finer.solve(both.data(), 1, &better);
         stiffest = (std::max)(stiffest, coarse.norm() / stiff);
-        if (one.position.y() > body.held_below + 2 * a)
+        if (one.place.y() > body.held_below + 2 * a)
           change.push_back((coarse - better).norm() / better.norm());
       }
     }
