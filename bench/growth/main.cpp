@@ -6,19 +6,19 @@
 ///
 /// Every tick moves the tool, asks, and writes the whole shape, as one servo thread would:
 ///
-///     detect_us, force_us,   tool to the next position; in turns: penetration() of every tool point (timed as
-///     exact_us, normals_us   detection), the whole force tick (timed as force), and that on the exact
+///     detect_us, force_us,   tool to the next position; in turns: penetration() of every tool point (timed
+///     exact_us, normals_us   as detection), the whole force tick (timed as force), and that on the exact
 ///                            ellipsoid, which has no samples; then the shape with normals (timed as normals)
 ///     shape_us               force tick, then the shape without normals (timed)
-///     linear_us              force tick, then the cheapest shape: linear interpolation, on the same mesh with
-///                            its vertices in the partition's order (sorted_by_face)
+///     linear_us              force tick, then the cheapest shape: linear interpolation, on the same mesh
+///                            with its vertices in the partition's order (sorted_by_face)
 ///     copy_us                force tick, then memcpy of as many bytes as the positions have (timed)
 ///
 /// So detection and force find the caches as the shape left them; what exact_us grows by is program and
 /// solver, not samples.
 ///
-///     beside_us              the force tick at 10 kHz in a thread of its own, while another draws as fast as it
-///                            can (shape with normals, contacts handed over by a TripleBuffer)
+///     beside_us              the force tick at 10 kHz in a thread of its own, while another draws as fast
+///                            as it can (shape with normals, contacts handed over by a TripleBuffer)
 ///
 /// Medians of the thread's processor time, less what reading it costs: a large mesh takes longer than a time
 /// slice, and other programs' share would count. memory_MB: heap of mesh surface, shape model and its

@@ -7,8 +7,8 @@
 /// one before. Steps take turns, so that all see the same machine; a turn is six times along the path, so
 /// that a step finds the caches as it left them.
 ///
-///     force                solve(), which also finds the position; "after a field": a field drawn just before
-///                          used the caches
+///     force                solve(), which also finds the position; "after a field": a field drawn just
+///                          before used the caches
 ///     field                displace() into packed floats, after a solve() that is not timed
 ///     deformation model    ResponseFieldDeformation::write(): force, field, positions, normals if asked for
 ///     memcpy               of as many bytes as the positions have

@@ -331,7 +331,7 @@ void mutate(std::string& s, std::mt19937_64& random) {
       if (s.size() >= 4) std::memcpy(&s[random() % (s.size() - 3)], &value, 4);
       break;
     }
-    case 15:  // the number of triangles of a binary STL file: 50 bytes times 2^31 more of them are 0 in 32 bits
+    case 15:  // triangles of a binary STL file: 50 bytes times 2^31 more of them are 0 in 32 bits
       if (s.size() > 83) s[83] = static_cast<char>(s[83] ^ 0x80);
       break;
     case 16:

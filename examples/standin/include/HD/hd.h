@@ -2,10 +2,10 @@
 #ifndef STANDIN_HD_H
 #define STANDIN_HD_H
 
-/* Declarations of palpate's stand-in haptic device: the part of a device interface that examples/openhaptics.hpp
- * calls, under the names and values of OpenHaptics HDAPI, so that the same source builds where the vendor's kit is
- * not installed. Written from the documented interface. Private to the examples: never installed, and not for use
- * with hardware. The behaviour is described in standin.hpp. */
+/* Declarations of palpate's stand-in haptic device: the part of a device interface that
+ * examples/openhaptics.hpp calls, under the names and values of OpenHaptics HDAPI, so that the same source
+ * builds where the vendor's kit is not installed. Written from the documented interface. Private to the
+ * examples: never installed, and not for use with hardware. standin.hpp describes the behaviour. */
 
 #include <limits.h>
 
