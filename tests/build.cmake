@@ -80,22 +80,15 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     PROPERTIES EXCLUDE_FROM_ALL ON)
 endif()
 
-# Two objects of one program.
+# Two objects of one program, each with every header, that both set up and use a response field: header-only,
+# and the field alone against the compiled set-up.
 add_executable(palpate_test_odr odr/first.cpp odr/second.cpp)
-palpate_own_target(palpate_test_odr)
-target_compile_options(palpate_test_odr PRIVATE -O0)
-target_include_directories(palpate_test_odr PRIVATE ${generated})
-add_test(NAME odr COMMAND palpate_test_odr)
-
-# Two objects that both make a response field and use it, header-only; and against the compiled set-up.
-add_executable(palpate_test_odr_field odr/first_field.cpp odr/second_field.cpp)
-palpate_own_target(palpate_test_odr_field)
-target_link_libraries(palpate_test_odr_field PRIVATE Threads::Threads)
+target_link_libraries(palpate_test_odr PRIVATE Threads::Threads)
 add_executable(palpate_test_odr_compiled odr/first_field.cpp odr/second_field.cpp)
-palpate_own_target(palpate_test_odr_compiled)
 target_link_libraries(palpate_test_odr_compiled PRIVATE palpate::compiled)
-foreach(program odr_field odr_compiled)
-  target_include_directories(palpate_test_${program} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR})
+foreach(program odr odr_compiled)
+  palpate_own_target(palpate_test_${program})
+  target_include_directories(palpate_test_${program} PRIVATE ${generated} ${CMAKE_CURRENT_SOURCE_DIR})
   target_compile_options(palpate_test_${program} PRIVATE -O0)
   add_test(NAME ${program} COMMAND palpate_test_${program})
 endforeach()

@@ -8,6 +8,8 @@
 #endif
 #include <all_headers.hpp>  // generated: each header of include/palpate
 
+#include "field.hpp"
+
 /// Functions of the library as one object sees them; one definition in the program means one address.
 struct Seen {
   void (*fail)(const char*, const char*);

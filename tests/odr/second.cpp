@@ -2,3 +2,4 @@
 #include "all.hpp"
 
 Seen seen_by_second() { return seen_here(); }
+std::vector<std::byte> field_of_second() { return field_here(); }
