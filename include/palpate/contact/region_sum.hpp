@@ -15,10 +15,10 @@
 namespace palpate {
 
 namespace detail {
-/// As many registers at once as suit a formula over the points of a leaf.
+/// `simd_group`, but no longer than a batch: for a sum over the points of a leaf.
 template <Real S>
-using leaf_simd = Simd<S, (simd_group<S>::size() < batch_size ? static_cast<int>(simd_group<S>::size())
-                                                              : static_cast<int>(batch_size))>;
+using batch_group = Simd<S, (simd_group<S>::size() < batch_size ? static_cast<int>(simd_group<S>::size())
+                                                                : static_cast<int>(batch_size))>;
 
 /// The largest of a leaf's numbers.
 template <Real S>
@@ -177,7 +177,7 @@ class alignas(64) LeafSum {
   }
 
  private:
-  using V = detail::leaf_simd<S>;
+  using V = detail::batch_group<S>;
   struct List3 {
     List x, y, z;
     [[nodiscard]] PALPATE_INLINE detail::SimdVec3<V> at(std::size_t i) const noexcept {

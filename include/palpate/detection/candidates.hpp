@@ -61,7 +61,7 @@ inline void for_each_candidate_leaf(const ToolPoints<S>& tool, const Pose<S>& X,
       continue;
     }
     if (node.skip == n + 1)
-      visit(node.begin, node.end - node.begin, detail::transformed(X, tool.lanes(node.begin)));
+      visit(node.begin, node.end - node.begin, detail::transformed(X, tool.batch(node.begin)));
     ++n;
   }
 }

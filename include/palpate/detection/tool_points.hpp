@@ -81,10 +81,10 @@ class ToolPoints {
       areas_.push_back(areas[i]);
     }
     // Leaves are full but for the last, so leaf k begins at point k leaf_size.
-    lanes_.resize((points_.size() + leaf_size - 1) / leaf_size);
-    for (std::size_t i = 0; i < lanes_.size() * leaf_size; ++i) {
+    batches_.resize((points_.size() + leaf_size - 1) / leaf_size);
+    for (std::size_t i = 0; i < batches_.size() * leaf_size; ++i) {
       const Vec3<S>& p = points_[(std::min)(i, points_.size() - 1)];
-      PointBatch<S>& leaf = lanes_[i / leaf_size];
+      PointBatch<S>& leaf = batches_[i / leaf_size];
       leaf.x[i % leaf_size] = p.x();
       leaf.y[i % leaf_size] = p.y();
       leaf.z[i % leaf_size] = p.z();
@@ -112,8 +112,8 @@ class ToolPoints {
   [[nodiscard]] Vec3<S> centre_of_mass() const noexcept { return centre_of_mass_; }
   /// The `batch_size` points from `begin` on, where a leaf begins; the last leaf is filled up with its last
   /// point.
-  [[nodiscard]] const PointBatch<S>& lanes(std::size_t begin) const noexcept {
-    return lanes_[begin / leaf_size];
+  [[nodiscard]] const PointBatch<S>& batch(std::size_t begin) const noexcept {
+    return batches_[begin / leaf_size];
   }
   /// The tree; the first node's ball holds all points.
   [[nodiscard]] std::span<const Node> nodes() const noexcept { return nodes_; }
@@ -150,7 +150,7 @@ class ToolPoints {
   }
 
   std::vector<Vec3<S>> points_;
-  std::vector<PointBatch<S>> lanes_;  // the same points, leaf by leaf
+  std::vector<PointBatch<S>> batches_;  // the same points, leaf by leaf
   std::vector<S> areas_;
   std::vector<std::uint32_t> original_;
   std::vector<Node> nodes_;

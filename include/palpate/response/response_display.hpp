@@ -17,7 +17,7 @@ class ResponseDisplay {
   struct Span {
     std::uint32_t triangle, begin, end;
   };
-  /// Around each span's vertices: by span, whole lanes.
+  /// Around each span's vertices: by span, whole SIMD registers.
   struct Spheres {
     std::vector<float> x, y, z, radius;
   };
@@ -32,7 +32,7 @@ class ResponseDisplay {
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] const std::vector<Span>& spans() const noexcept { return spans_; }
   [[nodiscard]] const Spheres& around() const noexcept { return around_; }
-  /// Slots: the sorted order, each span filled up to whole lanes by repeating its last vertex.
+  /// Slots: the sorted order, each span filled up to whole SIMD registers by repeating its last vertex.
   [[nodiscard]] std::size_t slots() const noexcept { return vertex_.size(); }
   /// By slot: rest position [m], weights of corners 1 and 2.
   [[nodiscard]] const float* x() const noexcept { return x_.data(); }

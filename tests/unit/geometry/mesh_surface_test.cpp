@@ -263,9 +263,9 @@ TEST_CASE("mesh surface: no heap in a query, and the same bits for the same inpu
       const auto p = b->penetration(x), q = b->penetration(x);
       differ += p.depth != q.depth || p.gradient != q.gradient;
       PenetrationBatch<double> in;
-      PointBatch<double> lanes;
-      lanes.x.fill(x.x()), lanes.y.fill(x.y()), lanes.z.fill(x.z());
-      b->penetration(lanes, in);
+      PointBatch<double> batch;
+      batch.x.fill(x.x()), batch.y.fill(x.y()), batch.z.fill(x.z());
+      b->penetration(batch, in);
       (void)b->closest(x);
       (void)b->separated(x, 0.001);
       (void)b->raycast(x, x);

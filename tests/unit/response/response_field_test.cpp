@@ -112,11 +112,11 @@ TEST_CASE("near field of second order: the patch moves as one, no jump at its ed
   // What second order adds: to first order the near field undoes the slopes of w.
   const auto at = [&](double along, double down) {
     const V x = c.x + a * along * V(0.8, 0, 0.6) + a * down * c.m;
-    const auto lane = [](double value) { return detail::Simd4(static_cast<float>(value)); };
+    const auto all_four = [](double value) { return detail::Simd4(static_cast<float>(value)); };
     V u = V::Zero();
     for (int order = 0; order < 2; ++order) {
       const detail::SimdVec3<detail::Simd4> part =
-          both[order](detail::SimdVec3<detail::Simd4>{lane(x.x()), lane(x.y()), lane(x.z())});
+          both[order](detail::SimdVec3<detail::Simd4>{all_four(x.x()), all_four(x.y()), all_four(x.z())});
       u += (order == 0 ? 1 : -1) * V(double(part.x[0]), double(part.y[0]), double(part.z[0]));
     }
     return u;

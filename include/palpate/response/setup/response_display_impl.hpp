@@ -42,7 +42,7 @@ PALPATE_SETUP_INLINE void ResponseDisplay::bind(const ElementMesh& mesh,
     const Vec3<float> p = points[order[i]].cast<float>();
     around_.radius.back() = (std::max)(around_.radius.back(), (p - centre).norm());
     const bool last = i + 1 == order.size() || at[order[i + 1]].triangle != bound.triangle;
-    do {  // the last one again until the lane is whole
+    do {  // the last one again until the register is full
       x_.push_back(p.x());
       y_.push_back(p.y());
       z_.push_back(p.z());

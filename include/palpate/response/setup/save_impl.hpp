@@ -18,19 +18,19 @@ namespace detail {
 
 PALPATE_SETUP_INLINE std::uint64_t checksum(std::span<const std::byte> bytes) noexcept {
   constexpr std::uint64_t prime = 0x100000001b3;
-  std::uint64_t lane[4] = {0xcbf29ce484222325, 0x84222325cbf29ce4, 0x9e3779b97f4a7c15, 0xc2b2ae3d27d4eb4f};
+  std::uint64_t part[4] = {0xcbf29ce484222325, 0x84222325cbf29ce4, 0x9e3779b97f4a7c15, 0xc2b2ae3d27d4eb4f};
   std::size_t i = 0;
   for (; i + 32 <= bytes.size(); i += 32) {
     std::uint64_t word[4];
     std::memcpy(word, bytes.data() + i, 32);
     for (int k = 0; k < 4; ++k) {
-      lane[k] = (lane[k] ^ word[k]) * prime;
-      lane[k] ^= lane[k] >> 29;  // the high half reaches the low one
+      part[k] = (part[k] ^ word[k]) * prime;
+      part[k] ^= part[k] >> 29;  // the high half reaches the low one
     }
   }
-  for (; i < bytes.size(); ++i) lane[0] = (lane[0] ^ std::to_integer<std::uint64_t>(bytes[i])) * prime;
+  for (; i < bytes.size(); ++i) part[0] = (part[0] ^ std::to_integer<std::uint64_t>(bytes[i])) * prime;
   std::uint64_t all = bytes.size();
-  for (auto l : lane) all = (all ^ l) * prime;
+  for (auto l : part) all = (all ^ l) * prime;
   return all;
 }
 

@@ -67,7 +67,7 @@ class ResponseDrawing {
   [[nodiscard]] float reach() const noexcept {
     return static_cast<float>(tick::near_field_reach * field_->mesh().length);
   }
-  // Above 0 for a sphere that comes within reach of a contact. `S`: a number or a lane of them.
+  // Above 0 for a sphere that comes within reach of a contact. `S`: a number or a `Simd`.
   template <class S>
   [[nodiscard]] PALPATE_INLINE S within_reach(const S& x, const S& y, const S& z, const S& radius,
                                               const NearField& k) const noexcept {

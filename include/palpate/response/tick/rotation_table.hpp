@@ -27,7 +27,7 @@ class RotationTable {
   };
 
   RotationTable() = default;
-  /// `stride`: vertices, rounded up to whole lanes.
+  /// `stride`: vertices, rounded up to whole SIMD registers.
   RotationTable(const ElementMesh& mesh, std::size_t stride);
 
   /// Empty where a vertex is fixed or beyond the last.

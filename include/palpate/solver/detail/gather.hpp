@@ -143,7 +143,7 @@ template <Real S, ForceModel Force>
 inline void add_leaf(const LeafShare<S>& share, const Force& force, const PointBatch<S>& x,
                      const PenetrationBatch<S>& in, LeafSum<S>& sum) noexcept {
   std::array<S, batch_size> f;
-  using V = leaf_simd<S>;
+  using V = batch_group<S>;
   if constexpr (HasForces<Force, V>) {
     for (std::size_t i = 0; i < batch_size; i += V::size()) {
       const V depth = (min)((max)(V(&in.depth[i]), S(0)), force.max_depth());
@@ -258,7 +258,7 @@ class Collector<Regions<N, Sharing>, S> {
           leaf.begin = begin;
           leaf.in = in;
           ++leaves;
-          for (std::uint32_t i = 0; i < lanes; ++i) {
+          for (std::uint32_t i = 0; i < leaf_size; ++i) {
             point_[count] = begin + i;  // without a branch: overwritten by the next one unless it touches
             count += in.depth[i] > S(0) ? 1u : 0u;
           }
@@ -276,14 +276,15 @@ class Collector<Regions<N, Sharing>, S> {
         const Leaf& leaf = leaf_[k];
         if ((leaf.slots & bit) == 0) continue;
         // Placed anew: less work than to keep them, once other programs' data have taken the caches.
-        const PointBatch<S> x = detail::transformed(X, tool.lanes(leaf.begin));
+        const PointBatch<S> x = detail::transformed(X, tool.batch(leaf.begin));
         if (leaf.slots == bit) {
-          detail::add_leaf(share_[leaf.begin / lanes], force, x, leaf.in, sum);
+          detail::add_leaf(share_[leaf.begin / leaf_size], force, x, leaf.in, sum);
           continue;
         }
         PenetrationBatch<S> own = leaf.in;
-        for (std::uint32_t i = 0; i < lanes; ++i) own.depth[i] = leaf.slot[i] == slot ? own.depth[i] : S(0);
-        detail::add_leaf(share_[leaf.begin / lanes], force, x, own, sum);
+        for (std::uint32_t i = 0; i < leaf_size; ++i)
+          own.depth[i] = leaf.slot[i] == slot ? own.depth[i] : S(0);
+        detail::add_leaf(share_[leaf.begin / leaf_size], force, x, own, sum);
       }
       sums[slot] = sum.total();
       sums[slot].scale(Sharing::norm(static_cast<S>(sums[slot].points)));
@@ -302,7 +303,7 @@ class Collector<Regions<N, Sharing>, S> {
     for (std::size_t k = 0; k < leaves; ++k) {
       Leaf& leaf = leaf_[k];
       leaf.slots = 0;
-      for (; next < count && point_[next] < leaf.begin + lanes; ++next) {
+      for (; next < count && point_[next] < leaf.begin + leaf_size; ++next) {
         const std::uint8_t slot = tracker_.slot_of()[next];
         leaf.slots |= std::uint64_t(1) << slot;
         leaf.slot[point_[next] - leaf.begin] = slot;
@@ -311,7 +312,7 @@ class Collector<Regions<N, Sharing>, S> {
     }
   }
 
-  static constexpr std::uint32_t lanes = static_cast<std::uint32_t>(batch_size);
+  static constexpr std::uint32_t leaf_size = static_cast<std::uint32_t>(batch_size);
   /// Of the touching points [m]. A type of its own, so that the tracker is compiled once for all objects.
   struct Positions {
     const ToolPoints<S>* tool;
