@@ -214,7 +214,8 @@ class ContactSolver {
       }
     }
     ContactState<S> contact{slot.id,         sum.points, ContactMode::frictionless, sum.centre(), normal,
-                            -depth * normal, sum.force,  Vec3<S>::Zero(),           normal_force, sum.area()};
+                            -depth * normal, sum.force,  Vec3<S>::Zero(),           normal_force, sum.area(),
+                            sum.deepest};
     if constexpr (has_friction) {
       Memory& memory = memory_[k];
       if (slot.merged == 0 && slot.parent == RegionSlot::none) {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <palpate/geometry/sphere.hpp>
 #include <palpate/law/force/damped.hpp>
 #include <palpate/solver/contact_solver.hpp>
 
@@ -32,6 +33,32 @@ TEST_CASE_TEMPLATE("a point pressed in: F equals equation (3)", S, float, double
     CHECK(result.wrench.force.z() == 0);
     CHECK(result.status == Status::contact);
   }
+}
+
+TEST_CASE_TEMPLATE("a contact's depth is its deepest point's, a single point's is D", S, float, double) {
+  const Box<S> body({.half = Vec3<S>(S(0.05), S(0.02), S(0.05))});
+  const DuffingForce<S> duffing({.c1 = S(40), .c3 = S(3e8)});
+  Pose<S> X;
+  X.translation = Vec3<S>(S(0.001), S(0.0185), S(-0.002));
+  ContactSolver<Box<S>, DuffingForce<S>> point({.object = body, .tool = {}, .force = duffing});
+  (void)point.tick(X);
+  REQUIRE(point.contacts().size() == 1);
+  CHECK(point.contacts()[0].depth == -point.contacts()[0].displacement.y());
+
+  using Ball = ContactSolver<Box<S>, DuffingForce<S>, Frictionless<S>, SingleRegion<>>;
+  const TriangleMesh<S> mesh(Sphere<S>({.radius = S(0.004)}).mesh(200));
+  Ball ball({.object = body,
+             .tool = ToolPoints<S>(mesh, {.contact_area = S(1e-4)}, S(1e-3)),
+             .force = duffing,
+             .contacts = {}});
+  X.translation.y() = S(0.0225);
+  (void)ball.tick(X);
+  REQUIRE(ball.contacts().size() == 1);
+  S deepest = S(0);
+  for (std::uint32_t i = 0; i < ball.tool().size(); ++i)
+    deepest = std::max(deepest, body.penetration(X * ball.tool().point(i)).depth);
+  CHECK(ball.contacts()[0].depth == deepest);
+  CHECK(-ball.contacts()[0].displacement.y() < deepest);  // D carries the same force over the whole face
 }
 
 TEST_CASE("out of reach: zero wrench, no contact, no region") {
