@@ -123,7 +123,8 @@ struct Bench {
   }
   template <class S, std::size_t N, class Acting = AtContact>
   void regions(const char* suffix, int points) {
-    add<ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<N>, Acting>>(
+    add<ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<N>, NoDeformation<S>,
+                      Acting>>(
         "ellipsoid duffing fibre regions<" + std::to_string(N) + ">" + suffix, points, 0.04,
         {ellipsoid<S>(), face<S>(points, int(N)), duffing<S>(), fibre<S>(), {joining}});
   }
@@ -132,7 +133,8 @@ struct Bench {
     using Coupling = RegionSkeletons<Skeleton<S>, Rule>;
     std::vector<Vec3<S>> ends;
     for (const auto& end : extremal_points(ellipsoid<S>())) ends.push_back(end.position);
-    add<ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<4>, AtContact, Coupling>>(
+    add<ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<4>, NoDeformation<S>,
+                      AtContact, Coupling>>(
         name, points, 0.04,
         {ellipsoid<S>(),
          face<S>(points, 4),
@@ -171,8 +173,9 @@ struct Bench {
     point<S>("ellipsoid duffing fibre literal-shift point", law, fibre<S, LiteralShift>());
     point<S>("ellipsoid duffing fibre radial point", law, fibre<S, ReturnMapping, Radial>());
     // where the force acts
-    add<ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, SinglePoint, AtMassCentre>>(
-        "ellipsoid duffing fibre point at-mass-centre", 1, 0.04, {ellipsoid<S>(), {}, law, fibre<S>(), {}});
+    add<ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, SinglePoint, NoDeformation<S>,
+                      AtMassCentre>>("ellipsoid duffing fibre point at-mass-centre", 1, 0.04,
+                                     {ellipsoid<S>(), {}, law, fibre<S>(), {}});
     // topologies and sharing
     for (const int points : {1, 10, 100, 1000}) {
       add<ContactSolver<Ellipsoid<S>, DuffingForce<S>, Frictionless<S>, SingleRegion<>>>(

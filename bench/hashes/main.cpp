@@ -110,7 +110,7 @@ void bodies(const Output& out) {
       out, "Hertz law Coulomb", 0.04,
       {ellipsoid<S>(), {}, HertzForce<S>({.k = S(1e5), .compliance = S(1e-3)}), coulomb, {}});
   wrenches<ContactSolver<Ellipsoid<S>, DampedForce<SaturatedForce<DuffingForce<S>>, Viscous>, Frictionless<S>,
-                         SingleRegion<EqualSharing>, AtMassCentre>>(
+                         SingleRegion<EqualSharing>, NoDeformation<S>, AtMassCentre>>(
       out, "damped saturated law at the mass centre", 0.04,
       {ellipsoid<S>(),
        face<S>(100, 1),
@@ -121,8 +121,8 @@ void bodies(const Output& out) {
   using Coupling = RegionSkeletons<Skeleton<S>>;
   std::vector<Vec3<S>> ends;
   for (const auto& end : extremal_points(ellipsoid<S>())) ends.push_back(end.position);
-  wrenches<
-      ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<4>, AtContact, Coupling>>(
+  wrenches<ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<4>, NoDeformation<S>,
+                         AtContact, Coupling>>(
       out, "coupled regions", 0.04,
       {ellipsoid<S>(),
        face<S>(100, 4),

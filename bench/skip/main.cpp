@@ -106,8 +106,8 @@ struct point {
 };
 template <class S, class Friction, class Contacts, class Acting = AtContact,
           class Coupling = IndependentRegions>
-using Solver =
-    ContactSolver<typename Parts<S>::Body, typename Parts<S>::Law, Friction, Contacts, Acting, Coupling>;
+using Solver = ContactSolver<typename Parts<S>::Body, typename Parts<S>::Law, Friction, Contacts,
+                             NoDeformation<S>, Acting, Coupling>;
 struct point_at_mass_centre {
   template <class S, class P = Parts<S>>
   static auto make() {

@@ -87,8 +87,9 @@ struct SolverFeel final : Feel {
 
 /// The example's solver over any body.
 template <class Body, class Coupling = palpate::IndependentRegions, class Force = palpate::DuffingForce<S>>
-using Contact = palpate::ContactSolver<Body, Force, palpate::PowerLawFriction<S>,
-                                       palpate::Regions<most_regions>, palpate::AtContact, Coupling>;
+using Contact =
+    palpate::ContactSolver<Body, Force, palpate::PowerLawFriction<S>, palpate::Regions<most_regions>,
+                           palpate::NoDeformation<S>, palpate::AtContact, Coupling>;
 
 /// The paper's parameters (section VII): lengths in mm, m = 1 kg, and K = 10 read in dyn.
 inline const palpate::DuffingForce<S> paper_force({.c1 = 40, .c3 = 3e8});

@@ -21,8 +21,8 @@ struct Deaf {
 #endif
 };
 
-using Solver =
-    palpate::ContactSolver<palpate::Sphere<double>, palpate::LinearForce<double>,
-                           palpate::Frictionless<double>, palpate::Regions<4>, palpate::AtContact, Deaf>;
+using Solver = palpate::ContactSolver<palpate::Sphere<double>, palpate::LinearForce<double>,
+                                      palpate::Frictionless<double>, palpate::Regions<4>,
+                                      palpate::NoDeformation<double>, palpate::AtContact, Deaf>;
 
 int main() { return static_cast<int>(Solver::max_regions) - 4; }

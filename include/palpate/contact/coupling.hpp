@@ -71,6 +71,22 @@ concept RegionForceCoupling =
     HasContact<detail::CheckedCoupling<C, S>, S> && HasFromOthers<detail::CheckedCoupling<C, S>, S> &&
     HasShare<detail::CheckedCoupling<C, S>>;
 
+namespace detail {
+template <class Deformation>
+struct CouplingOf {
+  using type = IndependentRegions;
+};
+template <class Deformation>
+  requires requires { typename Deformation::Coupling; }
+struct CouplingOf<Deformation> {
+  using type = typename Deformation::Coupling;
+};
+}  // namespace detail
+
+/// What a deformation model says of the forces between regions, `Deformation::Coupling`; else none.
+template <class Deformation>
+using DefaultCoupling = typename detail::CouplingOf<Deformation>::type;
+
 static_assert(RegionForceCoupling<IndependentRegions, float> &&
               RegionForceCoupling<IndependentRegions, double>);
 

@@ -23,7 +23,7 @@ struct RegionSlot {
   }
 };
 
-/// The slot of a topology with one region.
+/// The slot of a topology with one region: its state from tick to tick.
 class SingleSlot {
  public:
   void update(bool touching) noexcept {
@@ -32,7 +32,8 @@ class SingleSlot {
     slot_.active = touching;
   }
   void reset() noexcept { slot_.active = false; }
-  [[nodiscard]] const RegionSlot& slot() const noexcept { return slot_; }
+  [[nodiscard]] const RegionSlot& slot(std::size_t) const noexcept { return slot_; }
+  [[nodiscard]] static constexpr bool changed() noexcept { return false; }
 
  private:
   RegionSlot slot_;

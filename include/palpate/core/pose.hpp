@@ -38,6 +38,12 @@ template <Real S>
          within(x.cross(y) - z, tolerance);
 }
 
+/// The tool's pose in the object's coordinates; both poses are in world coordinates.
+template <Real S>
+[[nodiscard]] inline Pose<S> relative(const Pose<S>& tool, const Pose<S>& object) noexcept {
+  return {object.rotation.transpose() * tool.rotation, object.to_tool(tool.translation)};
+}
+
 /// Bit by bit: also under -ffast-math no NaN is the same as a number, and -0 is not 0.
 template <Real S>
 [[nodiscard]] inline bool same_bits(const Pose<S>& a, const Pose<S>& b) noexcept {
@@ -51,5 +57,11 @@ struct Wrench {
   Vec3<S> force = Vec3<S>::Zero();
   Vec3<S> torque = Vec3<S>::Zero();
 };
+
+/// The same wrench in coordinates that `rotation` turns the present ones into.
+template <Real S>
+[[nodiscard]] inline Wrench<S> rotated(const Mat3<S>& rotation, const Wrench<S>& wrench) noexcept {
+  return {rotation * wrench.force, rotation * wrench.torque};
+}
 
 }  // namespace palpate

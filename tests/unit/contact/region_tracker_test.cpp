@@ -16,7 +16,8 @@ namespace {
 struct Line {
   explicit Line(int n)
       : tool(places(n), std::vector<double>(std::size_t(n), 1e-6), {.contact_area = 1e-4}),
-        tracker(ProximityGraph<double>(tool, 1.5e-3), tool.size()),
+        graph(tool, 1.5e-3),
+        tracker(tool.size()),
         index(tool.size()) {
     for (std::uint32_t i = 0; i < tool.size(); ++i) index[tool.original(i)] = i;
   }
@@ -31,7 +32,7 @@ struct Line {
     touching = now;
     std::vector<std::uint32_t> indices;
     for (const std::uint32_t place : now) indices.push_back(index[place]);
-    return tracker.update(indices, [&](std::size_t i) { return tool.point(indices[i]); });
+    return tracker.update(graph, indices, [&](std::size_t i) { return tool.point(indices[i]); });
   }
   [[nodiscard]] const RegionSlot& slot_at(std::uint32_t point) const {
     for (std::size_t i = 0; i < touching.size(); ++i)
@@ -46,6 +47,7 @@ struct Line {
   }
 
   ToolPoints<double> tool;
+  ProximityGraph<double> graph;
   RegionTracker<double, 4> tracker;
   std::vector<std::uint32_t> index;  // of the point at a position
   std::vector<std::uint32_t> touching;

@@ -177,7 +177,8 @@ ToolPoints<double> pins() {
 }  // namespace
 
 TEST_CASE("a solver of the user's policies alone: two pins slide, each region feels the other") {
-  using Coupled = ContactSolver<Ground, Spring, Rubber, Regions<8, PinArray>, AtContact, Relief>;
+  using Coupled =
+      ContactSolver<Ground, Spring, Rubber, Regions<8, PinArray>, NoDeformation<double>, AtContact, Relief>;
   Coupled solver({.object = {},
                   .tool = pins(),
                   .force = {100},

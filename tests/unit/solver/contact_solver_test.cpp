@@ -146,7 +146,7 @@ TEST_CASE("a rate-dependent law uses dt, and only dt that makes sense") {
 
 TEST_CASE("force at the mass centre: the paper's form has no torque") {
   ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<>,
-                AtMassCentre>
+                NoDeformation<double>, AtMassCentre>
       paper({.object = egg, .tool = face(5, 1e-3, 1e-5), .force = law, .friction = dry});
   ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<>> full(
       {.object = egg, .tool = face(5, 1e-3, 1e-5), .force = law, .friction = dry});

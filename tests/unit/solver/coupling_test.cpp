@@ -21,7 +21,7 @@ const Ellipsoid<double> egg({.axes = V(0.06, 0.04, 0.04)});
 using Beams = Skeleton<double>;
 template <class Rule>
 using Coupled = ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4>,
-                              AtContact, RegionSkeletons<Beams, Rule>>;
+                              NoDeformation<double>, AtContact, RegionSkeletons<Beams, Rule>>;
 using Independent =
     ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4>>;
 

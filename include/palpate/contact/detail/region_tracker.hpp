@@ -21,7 +21,8 @@ namespace palpate {
 ///
 /// Region: connected component of the graph that joins touching tool points nearer than r; the tie |x_i -
 /// x_j| = r does not join. The tool is rigid, so the graph is built once and the partition depends only on
-/// which points touch: while that set stays the same nothing is computed.
+/// which points touch: while that set stays the same nothing is computed. A value: a copy goes on from the
+/// same tick, and copies among trackers of one tool take no heap.
 ///
 /// Identity: a component continues the region that shares most points with it (or, where it shares none, has
 /// most points within r of it). A region that falls apart lives on in the piece with most points; the others
@@ -33,7 +34,7 @@ class RegionTracker {
  public:
   static constexpr std::uint8_t none = RegionSlot::none;
 
-  RegionTracker(ProximityGraph<S> graph, std::size_t points) : graph_(std::move(graph)) {
+  explicit RegionTracker(std::size_t points) {
     for (Touched& t : touched_) {
       t.list.resize(points);
       t.where.resize(points);
@@ -50,9 +51,10 @@ class RegionTracker {
   }
 
   /// Takes this tick's touching tool points, given by index, with `position(i)` the position of list
-  /// entry i [m].
+  /// entry i [m]. `graph` is the tool's, the same in all ticks.
   template <class Position>
-  Status update(std::span<const std::uint32_t> touching, const Position& position) noexcept {
+  Status update(const ProximityGraph<S>& graph, std::span<const std::uint32_t> touching,
+                const Position& position) noexcept {
     for (std::size_t k = 0; k < N; ++k) {
       slots_[k].merged = std::uint64_t(slots_[k].active) << k;
       slots_[k].parent = none;
@@ -66,8 +68,8 @@ class RegionTracker {
     std::copy(touching.begin(), touching.end(), next.list.begin());
     next.count = touching.size();
     for (std::size_t i = 0; i < next.count; ++i) next.where[next.list[i]] = static_cast<std::uint32_t>(i);
-    const std::size_t count = cluster(next);
-    assign(last, next, count, position);
+    const std::size_t count = cluster(graph, next);
+    assign(graph, last, next, count, position);
     now_ = 1 - now_;
     return overflow_;
   }
@@ -100,7 +102,7 @@ class RegionTracker {
   };
 
   // Breadth-first search over the r-graph; queue_ ends up holding the entries grouped by component.
-  std::size_t cluster(const Touched& set) noexcept {
+  std::size_t cluster(const ProximityGraph<S>& graph, const Touched& set) noexcept {
     constexpr std::uint32_t unseen = (std::numeric_limits<std::uint32_t>::max)();
     std::fill_n(component_.begin(), set.count, unseen);
     std::size_t components = 0, head = 0, tail = 0;
@@ -112,7 +114,7 @@ class RegionTracker {
       queue_[tail++] = static_cast<std::uint32_t>(seed);
       while (head < tail) {
         const std::uint32_t entry = queue_[head++];
-        for (const std::uint32_t neighbour : graph_.neighbours(set.list[entry])) {
+        for (const std::uint32_t neighbour : graph.neighbours(set.list[entry])) {
           if (!set.contains(neighbour)) continue;
           const std::uint32_t other = set.where[neighbour];
           if (component_[other] != unseen) continue;
@@ -126,7 +128,8 @@ class RegionTracker {
   }
 
   template <class Position>
-  void assign(const Touched& last, Touched& next, std::size_t count, const Position& position) noexcept {
+  void assign(const ProximityGraph<S>& graph, const Touched& last, Touched& next, std::size_t count,
+              const Position& position) noexcept {
     constexpr std::size_t nobody = (std::numeric_limits<std::size_t>::max)();
     std::array<std::size_t, N> heir;  // component that shares most points with each old slot
     std::array<std::uint32_t, N> shared_with_heir{};
@@ -144,7 +147,7 @@ class RegionTracker {
       if (std::any_of(shared.begin(), shared.end(), [](std::uint32_t n) { return n > 0; })) return shared;
       // A fast roll exchanges every point in one tick: then being within r of the region counts.
       for (std::uint32_t q = c.begin; q < c.end; ++q) {
-        for (const std::uint32_t point : graph_.neighbours(next.list[queue_[q]])) {
+        for (const std::uint32_t point : graph.neighbours(next.list[queue_[q]])) {
           if (last.contains(point)) ++shared[last.slot[last.where[point]]];
         }
       }
@@ -229,7 +232,6 @@ class RegionTracker {
     return static_cast<std::uint8_t>(best);
   }
 
-  ProximityGraph<S> graph_;
   std::array<Touched, 2> touched_;
   std::size_t now_ = 0;
   std::vector<std::uint32_t> queue_;

@@ -2,11 +2,11 @@
 #pragma once
 
 /// @file From the tool's pose to the sums of its regions: one collector per topology, all with the same
-/// interface.
+/// interface. A collector is set up once and does not change; what changes is its state, a value.
 ///
-///     Sum<Force>                                      what adds up a region
-///     Status collect(object, tool, force, X, sums)    finds what touches and adds it up, one sum per slot
-///     slot(k), changed(), reset()                     the regions' identity
+///     Sum<Force>                                           what adds up a region
+///     State, initial_state()                               from tick to tick: slot(k), changed(), reset()
+///     Status collect(object, tool, force, X, state, sums)  finds what touches and adds it up, a sum per slot
 
 #include <palpate/contact/detail/region_tracker.hpp>
 #include <palpate/contact/region_slot.hpp>
@@ -178,13 +178,16 @@ class Collector<SinglePoint, S> {
   template <ForceModel Force>
   using Sum = std::conditional_t<ForceMap<Force>, RegionSum<S>, PointForce<S>>;
 
+  using State = SingleSlot;
+  [[nodiscard]] State initial_state() const noexcept { return {}; }
+
   template <ContactSurface Object, ForceModel Force>
   Status collect(const Object& object, const PointTool<S>& tool, const Force& force, const Pose<S>& X,
-                 std::array<Sum<Force>, 1>& sums) noexcept {
+                 State& state, std::array<Sum<Force>, 1>& sums) const noexcept {
     const Vec3<S> x = X * tool.tip;
     const Penetration<S> in = object.penetration(x);
     const bool touching = in.depth > S(0);
-    slot_.update(touching);
+    state.update(touching);
     if (!touching) return Status::ok;
     const auto& law = detail::law_at(force, x);
     const Vec3<S> arm = X.rotation * (tool.tip - tool.centre_of_mass);
@@ -192,12 +195,6 @@ class Collector<SinglePoint, S> {
     if constexpr (ForceMap<Force>) sums[0].add(arm, law.configurational_force(in.depth));
     return Status::contact | detail::depth_status(object, force, in.depth);
   }
-  [[nodiscard]] const RegionSlot& slot(std::size_t) const noexcept { return slot_.slot(); }
-  [[nodiscard]] static constexpr bool changed() noexcept { return false; }
-  void reset() noexcept { slot_.reset(); }
-
- private:
-  SingleSlot slot_;
 };
 
 template <MassSharing Sharing, Real S>
@@ -209,71 +206,120 @@ class Collector<SingleRegion<Sharing>, S> {
   Collector(const SingleRegion<Sharing>&, const ToolPoints<S>& tool)
       : share_(detail::leaf_shares<Sharing>(tool)) {}
 
+  using State = SingleSlot;
+  [[nodiscard]] State initial_state() const noexcept { return {}; }
+
   template <ContactSurface Object, ForceModel Force>
   Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
-                 std::array<RegionSum<S>, 1>& sums) noexcept {
+                 State& state, std::array<RegionSum<S>, 1>& sums) const noexcept {
     LeafSum<S> leaves(X * tool.centre_of_mass());
     detail::for_each_touching_leaf(
         tool, X, object,
         [&](std::uint32_t begin, const PointBatch<S>& x, const PenetrationBatch<S>& in) noexcept {
           detail::add_leaf(share_[begin / batch_size], force, x, in, leaves);
         });
-    slot_.update(!leaves.empty());
+    state.update(!leaves.empty());
     if (leaves.empty()) return Status::ok;
     RegionSum<S>& sum = sums[0];
     sum = leaves.total();
     sum.scale(Sharing::norm(static_cast<S>(sum.points)));
     return Status::contact | detail::depth_status(object, force, sum.deepest);
   }
-  [[nodiscard]] const RegionSlot& slot(std::size_t) const noexcept { return slot_.slot(); }
-  [[nodiscard]] static constexpr bool changed() noexcept { return false; }
-  void reset() noexcept { slot_.reset(); }
 
  private:
-  SingleSlot slot_;
   std::vector<detail::LeafShare<S>> share_;
 };
 
 template <std::size_t N, MassSharing Sharing, Real S>
 class Collector<Regions<N, Sharing>, S> {
+  static constexpr std::uint32_t leaf_size = static_cast<std::uint32_t>(batch_size);
+  /// Of the touching points [m]. A type of its own, so that the tracker is compiled once for all objects.
+  struct Positions {
+    const ToolPoints<S>* tool;
+    const Pose<S>* pose;
+    const std::uint32_t* point;
+    [[nodiscard]] Vec3<S> operator()(std::size_t i) const noexcept { return *pose * tool->point(point[i]); }
+  };
+  struct Leaf {
+    std::uint32_t begin;
+    std::uint64_t slots;                          // of its touching points, as bits
+    std::array<std::uint8_t, batch_size> slot{};  // of each of them
+    PenetrationBatch<S> in;
+  };
+
  public:
   template <ForceModel>
   using Sum = RegionSum<S>;
 
   Collector(const Regions<N, Sharing>& regions, const ToolPoints<S>& tool)
-      : tracker_(ProximityGraph<S>(tool, static_cast<S>(regions.distance)), tool.size()),
+      : graph_(tool, static_cast<S>(regions.distance)),
         share_(detail::leaf_shares<Sharing>(tool)),
-        leaf_(share_.size()),
-        point_(tool.size() + 1) {}
+        points_(tool.size()) {}
+
+  /// The regions' identity, and the lists that a tick works in.
+  class State {
+   public:
+    [[nodiscard]] const RegionSlot& slot(std::size_t k) const noexcept { return tracker_.slots()[k]; }
+    [[nodiscard]] bool changed() const noexcept { return tracker_.changed(); }
+    void reset() noexcept { tracker_.reset(); }
+
+   private:
+    friend class Collector;
+    State(std::size_t points, std::size_t leaves) : tracker_(points), leaf_(leaves), point_(points + 1) {}
+
+    // The slots of each leaf's touching points; they stay while those points stay.
+    void find_slots(std::size_t leaves, std::size_t count) noexcept {
+      std::size_t next = 0;
+      met_ = 0;
+      for (std::size_t k = 0; k < leaves; ++k) {
+        Leaf& leaf = leaf_[k];
+        leaf.slots = 0;
+        for (; next < count && point_[next] < leaf.begin + leaf_size; ++next) {
+          const std::uint8_t slot = tracker_.slot_of()[next];
+          leaf.slots |= std::uint64_t(1) << slot;
+          leaf.slot[point_[next] - leaf.begin] = slot;
+        }
+        met_ |= leaf.slots;
+      }
+    }
+
+    RegionTracker<S, N> tracker_;
+    std::vector<Leaf> leaf_;            // of this tick, those with touching points
+    std::vector<std::uint32_t> point_;  // touching tool points of this tick, in order
+    std::uint64_t met_ = 0;             // slots that have points, as bits
+  };
+  [[nodiscard]] State initial_state() const { return State(points_, share_.size()); }
 
   template <ContactSurface Object, ForceModel Force>
   Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
-                 std::array<RegionSum<S>, N>& sums) noexcept {
+                 State& state, std::array<RegionSum<S>, N>& sums) const noexcept {
     std::size_t leaves = 0, count = 0;
     S deepest = S(0);
     detail::for_each_touching_leaf(
         tool, X, object,
         [&](std::uint32_t begin, const PointBatch<S>&, const PenetrationBatch<S>& in) noexcept {
-          Leaf& leaf = leaf_[leaves];
+          Leaf& leaf = state.leaf_[leaves];
           leaf.begin = begin;
           leaf.in = in;
           ++leaves;
           for (std::uint32_t i = 0; i < leaf_size; ++i) {
-            point_[count] = begin + i;  // without a branch: overwritten by the next one unless it touches
+            state.point_[count] =
+                begin + i;  // without a branch: overwritten by the next one unless it touches
             count += in.depth[i] > S(0) ? 1u : 0u;
           }
           deepest = (std::max)(deepest, detail::max_of(in.depth));
         });
-    Status status = tracker_.update({point_.data(), count}, Positions{&tool, &X, point_.data()});
+    Status status = state.tracker_.update(graph_, {state.point_.data(), count},
+                                          Positions{&tool, &X, state.point_.data()});
     if (count == 0) return Status::ok;
-    if (tracker_.changed()) find_slots(leaves, count);
+    if (state.tracker_.changed()) state.find_slots(leaves, count);
     const Vec3<S> centre_of_mass = X * tool.centre_of_mass();
     for (std::size_t slot = 0; slot < N; ++slot) {
       const std::uint64_t bit = std::uint64_t(1) << slot;
-      if ((met_ & bit) == 0) continue;
+      if ((state.met_ & bit) == 0) continue;
       LeafSum<S> sum(centre_of_mass);
       for (std::size_t k = 0; k < leaves; ++k) {
-        const Leaf& leaf = leaf_[k];
+        const Leaf& leaf = state.leaf_[k];
         if ((leaf.slots & bit) == 0) continue;
         // Placed anew: less work than to keep them, once other programs' data have taken the caches.
         const PointBatch<S> x = detail::transformed(X, tool.batch(leaf.begin));
@@ -291,47 +337,11 @@ class Collector<Regions<N, Sharing>, S> {
     }
     return status | Status::contact | detail::depth_status(object, force, deepest);
   }
-  [[nodiscard]] const RegionSlot& slot(std::size_t k) const noexcept { return tracker_.slots()[k]; }
-  [[nodiscard]] bool changed() const noexcept { return tracker_.changed(); }
-  void reset() noexcept { tracker_.reset(); }
 
  private:
-  // The slots of each leaf's touching points; they stay while those points stay.
-  void find_slots(std::size_t leaves, std::size_t count) noexcept {
-    std::size_t next = 0;
-    met_ = 0;
-    for (std::size_t k = 0; k < leaves; ++k) {
-      Leaf& leaf = leaf_[k];
-      leaf.slots = 0;
-      for (; next < count && point_[next] < leaf.begin + leaf_size; ++next) {
-        const std::uint8_t slot = tracker_.slot_of()[next];
-        leaf.slots |= std::uint64_t(1) << slot;
-        leaf.slot[point_[next] - leaf.begin] = slot;
-      }
-      met_ |= leaf.slots;
-    }
-  }
-
-  static constexpr std::uint32_t leaf_size = static_cast<std::uint32_t>(batch_size);
-  /// Of the touching points [m]. A type of its own, so that the tracker is compiled once for all objects.
-  struct Positions {
-    const ToolPoints<S>* tool;
-    const Pose<S>* pose;
-    const std::uint32_t* point;
-    [[nodiscard]] Vec3<S> operator()(std::size_t i) const noexcept { return *pose * tool->point(point[i]); }
-  };
-  struct Leaf {
-    std::uint32_t begin;
-    std::uint64_t slots;                          // of its touching points, as bits
-    std::array<std::uint8_t, batch_size> slot{};  // of each of them
-    PenetrationBatch<S> in;
-  };
-
-  RegionTracker<S, N> tracker_;
+  ProximityGraph<S> graph_;
   std::vector<detail::LeafShare<S>> share_;
-  std::vector<Leaf> leaf_;            // of this tick, those with touching points
-  std::vector<std::uint32_t> point_;  // touching tool points of this tick, in order
-  std::uint64_t met_ = 0;             // slots that have points, as bits
+  std::size_t points_;
 };
 
 }  // namespace palpate
