@@ -171,7 +171,7 @@ if(UNIX)
   add_test(NAME house COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/check_house.sh ${PROJECT_SOURCE_DIR})
   add_test(NAME readme COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/check_readme.sh ${PROJECT_SOURCE_DIR})
   add_test(NAME docs COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/check_docs.sh ${PROJECT_SOURCE_DIR})
-  foreach(check docs house)
+  foreach(check budgets docs house)
     add_test(NAME ${check}_refuses
       COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/check_${check}_test.sh ${CMAKE_CURRENT_BINARY_DIR}/${check})
   endforeach()

@@ -9,7 +9,6 @@
 #include <condition_variable>
 #include <cstddef>
 #include <mutex>
-#include <random>
 #include <thread>
 
 #if defined(__linux__)
@@ -57,6 +56,17 @@ constexpr HDenum capabilities[] = {
     HD_ONE_FRAME_LIMIT};
 constexpr std::size_t capability_count = sizeof capabilities / sizeof capabilities[0];
 
+/// Uniform in [0, 1), by splitmix64. A constant initialises it, unlike the engines of <random>.
+struct Uniform {
+  std::uint64_t state = 0;
+  double operator()() {
+    std::uint64_t z = state += 0x9e3779b97f4a7c15u;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+  }
+};
+
 /// Everything but the locks and the thread; reset() assigns a fresh one.
 struct World {
   Constants constants;
@@ -79,7 +89,8 @@ struct World {
   // device
   bool open = false, in_frame = false, frame_lost = false, framed_this_tick = false, calibrated = false;
   std::array<bool, capability_count> enabled{false, false, true, true, true, true, true};
-  double velocity_limit = 0, impulse_limit = 0, ramping_rate = 0;
+  double velocity_limit = constants.velocity_limit, impulse_limit = constants.impulse_limit,
+         ramping_rate = constants.ramping_rate;
   Snapshot seen, last_seen;
   HDenum calibration_status = HD_CALIBRATION_OK;
 
@@ -98,7 +109,7 @@ struct World {
   int stall = 0, inject_frames = 0, inject_internal = 0;
   HDerror inject_code = HD_SUCCESS, refuse_rate = HD_SUCCESS;
   double jitter = 0;
-  std::mt19937_64 random;
+  Uniform random;
   bool unplugged = false;
 
   void error(HDerror code, int internal = 0) {
@@ -130,8 +141,8 @@ struct World {
   void begin_frame();
 };
 
-World world;
-std::mutex guard;                    // of `world`; not held while callbacks and scripts run
+constinit World world;  // so that another file's static initialiser may script the hand (press.cpp)
+std::mutex guard;       // of `world`; not held while callbacks and scripts run
 std::condition_variable round_over;  // a tick has ended
 thread_local bool in_servo = false;  // this thread runs callbacks
 
@@ -302,8 +313,7 @@ std::int64_t next_wait() {
   const std::lock_guard lock(guard);
   std::int64_t wait = world.period * (1 + world.stall);
   world.stall = 0;
-  if (world.jitter > 0)
-    wait += std::llround(1e9 * world.jitter * static_cast<double>(world.random() >> 11) * 0x1p-53);
+  if (world.jitter > 0) wait += std::llround(1e9 * world.jitter * world.random());
   return wait;
 }
 
@@ -597,7 +607,7 @@ void stall(int periods) {
 void jitter(double most, std::uint64_t seed) {
   const std::lock_guard lock(guard);
   world.jitter = most;
-  world.random.seed(seed);
+  world.random.state = seed;
 }
 void inject(HDerror code, int internal_code, int frames) {
   const std::lock_guard lock(guard);
