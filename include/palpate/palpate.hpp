@@ -66,9 +66,13 @@
 #include <palpate/luo_xiao/interpolation/smooth.hpp>
 #include <palpate/luo_xiao/neighbourhood.hpp>
 #include <palpate/luo_xiao/beam_skeleton.hpp>
+#include <palpate/luo_xiao/make_beam_skeleton.hpp>
 
 // solver: one tick
 #include <palpate/solver/contact_solver.hpp>
+#include <palpate/solver/aliases.hpp>
+#include <palpate/solver/stiffness.hpp>
+#include <palpate/solver/wrench_ramp.hpp>
 
 // device: out to the hand
 #include <palpate/device/energy_limit.hpp>

@@ -35,6 +35,7 @@ class BeamSkeletonDeformation {
  public:
   using Scalar = typename R::Scalar;
   using S = Scalar;
+  using Regions = R;
   using D = typename I::Scalar;  ///< the display's scalar
   static constexpr bool active = true;
   static constexpr std::size_t max_contacts = decltype(R::Result::loads)::capacity;

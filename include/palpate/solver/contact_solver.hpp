@@ -94,7 +94,7 @@ class ContactSolver {
   };
 
   /// What a tick leaves for the next one: a value, made by initial_state(). A copy goes on from the same
-  /// tick. Copies among the states of one solver take no heap; with one region it is trivially copyable.
+  /// tick. Copies among the states of one solver take no heap; with one region its size is fixed.
   class State {
    public:
     /// The regions of the last tick: values to hand over, record or draw.
@@ -221,6 +221,14 @@ class ContactSolver {
     return object_;
   }
   [[nodiscard]] const Tool& tool() const noexcept { return tool_; }
+  /// Of the tool, in its coordinates [m].
+  [[nodiscard]] Vec3<S> centre_of_mass() const noexcept {
+    if constexpr (std::same_as<Contacts, SinglePoint>) {
+      return tool_.centre_of_mass;
+    } else {
+      return tool_.centre_of_mass();
+    }
+  }
   [[nodiscard]] const Force& force_law() const noexcept { return force_; }
   [[nodiscard]] const Friction& friction_law() const noexcept { return friction_; }
   [[nodiscard]] const Deformation& deformation() const noexcept { return deformation_; }
@@ -348,14 +356,6 @@ class ContactSolver {
       return sum.deepest;
     } else {
       return detail::law_at(force_, sum.centre()).depth(normal_force);
-    }
-  }
-
-  [[nodiscard]] Vec3<S> centre_of_mass() const noexcept {
-    if constexpr (std::same_as<Contacts, SinglePoint>) {
-      return tool_.centre_of_mass;
-    } else {
-      return tool_.centre_of_mass();
     }
   }
 
