@@ -142,6 +142,7 @@ struct Bench {
          duffing<S>(),
          fibre<S>(),
          {joining},
+         {},
          Coupling(Skeleton<S>(ends,
                               EulerBernoulli<double>(IsotropicElasticity<double>({.E = 1e5, .nu = 0.5})),
                               VolumePreserving<double>({.volume = ellipsoid<double>().volume()})))});

@@ -129,6 +129,7 @@ void bodies(const Output& out) {
        law,
        fibre<S>(),
        {joining},
+       {},
        Coupling(Skeleton<S>(ends, EulerBernoulli<double>(IsotropicElasticity<double>({.E = 1e5, .nu = 0.5})),
                             VolumePreserving<double>({.volume = ellipsoid<double>().volume()})))});
 }

@@ -149,7 +149,7 @@ struct regions_coupled {
   template <class S, class P = Parts<S>>
   static auto make() {
     using T = Solver<S, typename P::Fibre, Regions<8>, AtContact, RegionSkeletons<typename P::Beams>>;
-    return Scene<T>{T({P::body(), P::face(S(1e-3)), P::law(), P::fibre(), {1.5e-3}, P::beams()})};
+    return Scene<T>{T({P::body(), P::face(S(1e-3)), P::law(), P::fibre(), {1.5e-3}, {}, P::beams()})};
   }
 };
 struct regions_shape {

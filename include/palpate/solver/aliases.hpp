@@ -3,11 +3,11 @@
 
 /// @file Solvers that people want, by name.
 ///
-/// | name              | what it is                                                   | use it when               |
-/// |-------------------|--------------------------------------------------------------|---------------------------|
-/// | `PointSolver<O>`  | one point, Duffing's law, Coulomb friction, no shape         | a stylus; the least time  |
-/// | `RegionSolver<O>` | up to four regions of a tool's points, the same laws         | forces of a tool mesh     |
-/// | `PaperSolver<O>`  | [luo2005] whole: the same with its friction law and shape    | the paper's force and look |
+/// | name              | what it is                                               | use it when         |
+/// |-------------------|----------------------------------------------------------|---------------------|
+/// | `PointSolver<O>`  | one point, Duffing's law, Coulomb friction, no shape     | a stylus            |
+/// | `RegionSolver<O>` | the same laws for up to four regions of a tool's points  | forces of a mesh    |
+/// | `PaperSolver<O>`  | [luo2005] whole: its friction law and its shape as well  | the paper's results |
 ///
 /// `O` is the object's surface; its scalar is the solver's.
 
