@@ -55,6 +55,17 @@ template <MassSharing W>
 inline constexpr bool is_shipped_topology<SingleRegion<W>> = true;
 template <std::size_t N, MassSharing W>
 inline constexpr bool is_shipped_topology<Regions<N, W>> = true;
+/// What suits a tool where nothing is said.
+template <class Tool>
+struct DefaultTopology {
+  using type = SingleRegion<>;
+};
+template <Real S>
+struct DefaultTopology<PointTool<S>> {
+  using type = SinglePoint;
+};
+template <class Tool>
+using TopologyOf = typename DefaultTopology<Tool>::type;
 }  // namespace detail
 
 /// One of the three above: the solver knows how to collect points for these and for no other.

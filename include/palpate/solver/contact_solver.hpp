@@ -68,8 +68,7 @@ class ContactSolver {
   struct Last {
     Pose<typename Object::Scalar> pose;
     TickResult<typename Object::Scalar> result{};
-    int ticks = 0;          // in a row at this pose, up to 2; 0: none yet
-    unsigned revision = 0;  // of the solver that gave the result
+    int ticks = 0;  // in a row at this pose, up to 2; 0: none yet
   };
   template <class Item, int Role, bool present>
   using Present = std::conditional_t<present, Item, Absent<Role>>;
@@ -101,6 +100,8 @@ class ContactSolver {
     [[nodiscard]] std::span<const ContactState<S>> contacts() const noexcept {
       return {contacts_.begin(), contacts_.size()};
     }
+    /// Object or laws are others now: the next tick is worked out, though the pose is the last one's.
+    void refresh() noexcept { last_.ticks = (std::min)(last_.ticks, 1); }
     /// Forgets all contact, as after a calibration of the device.
     void reset() noexcept {
       contacts_.clear();
@@ -129,12 +130,6 @@ class ContactSolver {
         coupling_(std::move(parts.coupling)),
         collector_(parts.contacts, tool_),
         state_(initial_state()) {}
-
-  /// The parts in the order of their roles; types are deduced.
-  ContactSolver(Object object, Tool tool, Force force, Friction friction = {}, Contacts contacts = {},
-                Deformation deformation = {}, Acting = {}, Coupling coupling = {})
-      : ContactSolver(Parts{std::move(object), std::move(tool), std::move(force), std::move(friction),
-                            std::move(contacts), std::move(deformation), std::move(coupling)}) {}
 
   /// One tick with the tool at X (tool to object coordinates).
   [[nodiscard]] TickResult<S> tick(const Pose<S>& X) noexcept
@@ -205,19 +200,20 @@ class ContactSolver {
   }
 
   /// Other parameters from the next tick on. The force changes at once: WrenchRamp takes the kick out of it.
+  /// States of the caller's are to be refreshed.
   void set_force_law(const Force& force) noexcept {
     force_ = force;
-    ++revision_;
+    state_.refresh();
   }
   void set_friction_law(const Friction& friction) noexcept {
     friction_ = friction;
-    ++revision_;
+    state_.refresh();
   }
 
   [[nodiscard]] const Object& object() const noexcept { return object_; }
   /// For objects that follow a deformation (geometry/deformed_surface.hpp): the next tick is worked out anew.
   [[nodiscard]] Object& mutable_object() noexcept {
-    ++revision_;
+    state_.refresh();
     return object_;
   }
   [[nodiscard]] const Tool& tool() const noexcept { return tool_; }
@@ -242,8 +238,7 @@ class ContactSolver {
     // changes.
     Last& last = state.last_;
     const bool again = last.ticks > 0 && same_bits(X, last.pose);
-    if (again && last.ticks > 1 && last.revision == revision_)
-      return {last.result.wrench, last.result.status | status};
+    if (again && last.ticks > 1) return {last.result.wrench, last.result.status | status};
     if (!is_usable(X)) {
       state.reset();
       return {{}, status | Status::invalid_pose};
@@ -257,7 +252,7 @@ class ContactSolver {
       state.reset();
       return {{}, result.status | status | Status::non_finite_result};
     }
-    last = {X, result, again && last.revision == revision_ ? 2 : 1, revision_};
+    last = {X, result, again ? 2 : 1};
     return {result.wrench, result.status | status};
   }
 
@@ -366,7 +361,6 @@ class ContactSolver {
   PALPATE_NO_UNIQUE_ADDRESS Deformation deformation_;
   PALPATE_NO_UNIQUE_ADDRESS Coupling coupling_;
   Collector<Contacts, S> collector_;
-  unsigned revision_ = 0;  // of object and laws
   State state_;
 };
 
@@ -384,16 +378,22 @@ ContactSolver<Object, Force, Friction, Contacts, Deformation, Acting, Coupling>:
   return in_contact(X, dt, state);
 }
 
-// A point has one contact; of a tool with many points all are one region, where no topology is given.
-template <class Object, class S, class Force, class... Rest>
-ContactSolver(Object, PointTool<S>, Force, Rest...) -> ContactSolver<Object, Force, Rest...>;
-template <class Object, class S, class Force>
-ContactSolver(Object, ToolPoints<S>, Force) -> ContactSolver<Object, Force, Frictionless<S>, SingleRegion<>>;
-template <class Object, class S, class Force, class Friction>
-ContactSolver(Object, ToolPoints<S>, Force, Friction)
-    -> ContactSolver<Object, Force, Friction, SingleRegion<>>;
-template <class Object, class S, class Force, class Friction, class Contacts, class... Rest>
-ContactSolver(Object, ToolPoints<S>, Force, Friction, Contacts, Rest...)
-    -> ContactSolver<Object, Force, Friction, Contacts, Rest...>;
+/// A solver from its parts in the order of their roles; types are deduced. A `PointTool` has one contact; of
+/// `ToolPoints` all are one region where no topology is given.
+template <ContactSurface Object, class Tool, ForceModel Force,
+          FrictionLaw Friction = Frictionless<typename Object::Scalar>,
+          Topology Contacts = detail::TopologyOf<Tool>,
+          DeformationModel Deformation = NoDeformation<typename Object::Scalar>>
+[[nodiscard]] ContactSolver<Object, Force, Friction, Contacts, Deformation> make_solver(
+    Object object, Tool tool, Force force, Friction friction = {}, Contacts contacts = {},
+    Deformation deformation = {}) {
+  return ContactSolver<Object, Force, Friction, Contacts, Deformation>(
+      {.object = std::move(object),
+       .tool = std::move(tool),
+       .force = std::move(force),
+       .friction = std::move(friction),
+       .contacts = std::move(contacts),
+       .deformation = std::move(deformation)});
+}
 
 }  // namespace palpate

@@ -183,14 +183,14 @@ TEST_CASE(
 }
 
 TEST_CASE("types are deduced from the parts in the order of their roles") {
-  const ContactSolver point(egg, PointTool<double>{}, law);
+  const auto point = make_solver(egg, PointTool<double>{}, law);
   static_assert(std::same_as<std::remove_const_t<decltype(point)>,
                              ContactSolver<Ellipsoid<double>, DuffingForce<double>>>);
-  const ContactSolver stylus(egg, PointTool<double>{}, law, dry);
+  const auto stylus = make_solver(egg, PointTool<double>{}, law, dry);
   static_assert(std::same_as<std::remove_const_t<decltype(stylus)>, PointSolver<Ellipsoid<double>>>);
-  const ContactSolver region(egg, face(3, 1e-3, 1e-5), law, dry);
+  const auto region = make_solver(egg, face(3, 1e-3, 1e-5), law, dry);
   static_assert(std::same_as<std::remove_const_t<decltype(region)>, Single>);
-  const ContactSolver regions(egg, face(3, 1e-3, 1e-5), law, dry, Regions<4>{2e-3});
+  const auto regions = make_solver(egg, face(3, 1e-3, 1e-5), law, dry, Regions<4>{2e-3});
   static_assert(std::same_as<std::remove_const_t<decltype(regions)>, RegionSolver<Ellipsoid<double>>>);
 }
 
