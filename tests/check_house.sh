@@ -8,7 +8,7 @@ cd "$1"
 # Reading order of the folders; each includes only those before it and itself. What lies in detail/, setup/ or
 # tick/ is the folder's machinery: only the folder itself includes it, and the machinery of other folders.
 layers="core geometry display detection contact law elasticity luo_xiao response resolved solver device calibrate"
-layers="$layers adapters"
+layers="$layers touch adapters"
 
 version=$(awk '$2 ~ /^PALPATE_VERSION_(MAJOR|MINOR|PATCH)$/ { v = v "." $3 } END { print substr(v, 2) }' \
   include/palpate/version.hpp)

@@ -16,8 +16,8 @@
 ///
 /// Header-only is the default. What only set-up needs and costs much to compile is defined in files
 /// `setup/*_impl.hpp`, which the headers include at their end. With PALPATE_COMPILED they do not:
-/// src/palpate.cpp holds those functions, once, and the program links it. The CMake target palpate::compiled
-/// defines the macro and links the library.
+/// src/palpate.cpp and src/touch.cpp hold those functions, once, and the program links them. The CMake target
+/// palpate::compiled defines the macro and links the library.
 
 #if __has_include(<palpate_config.hpp>)
 #include <palpate_config.hpp>

@@ -4,6 +4,7 @@
 /// @file A response field's force as the force law of the contact solver: a law's coefficients over the whole
 /// object, fitted to what the field answers. Set-up only.
 
+#include <palpate/calibrate/detail/fit_map.hpp>
 #include <palpate/calibrate/duffing_fit.hpp>
 #include <palpate/calibrate/hertz_fit.hpp>
 #include <palpate/calibrate/response_curve.hpp>
@@ -18,6 +19,8 @@ struct ResponseMapParams {
   S radius;  ///< > 0 [m]: a of the patch that the tool presses, sqrt(A/pi) of its contact area; or the ball's
   S depth;   ///< [m] > 0: the law is fitted from 0 to here
   S spacing;  ///< [m] > 0: of the map's nodes; a third to a half of `field.mesh().length` is apt
+  std::size_t points = 20;  ///< of each curve that is fitted, >= 4
+  unsigned threads = 1;     ///< the map is the same, bit for bit, with any number
 };
 
 /// What was fitted, and how well.
@@ -30,27 +33,15 @@ struct ResponseMap {
 };
 
 namespace detail {
-/// fit(point of the surface) -> DuffingFit or the like, for each node of a grid over the body.
 template <ForceMap Map, SampledBody B, class Fit>
-[[nodiscard]] ResponseMap<Map> fit_map(const B& body, const ResponseMapParams<typename B::Scalar>& params,
-                                       const char* where, const Fit& fit) {
-  using S = typename B::Scalar;
+[[nodiscard]] ResponseMap<Map> fit_response(const B& body,
+                                            const ResponseMapParams<typename B::Scalar>& params,
+                                            const char* where, const Fit& fit) {
   require_positive(params.radius, where, "radius [m] must be > 0");
   require_positive(params.depth, where, "depth [m] must be > 0");
-  double worst = 0;
-  Vec3<S> worst_at = Vec3<S>::Zero();
-  Map map({.spacing = params.spacing, .lower = body.lower(), .upper = body.upper()},
-          [&](const Vec3<S>& node) {
-            const SurfacePoint<S> at = body.closest(node);
-            const auto fitted = fit(at);
-            if (fitted.fit.relative_rms > worst) {
-              worst = fitted.fit.relative_rms;
-              worst_at = at.position;
-            }
-            const auto& [first, second] = fitted.params;
-            return typename Map::Coefficients{static_cast<S>(first), static_cast<S>(second)};
-          });
-  return {std::move(map), worst, worst_at};
+  if (params.points < 4) fail(where, "points must be >= 4", static_cast<double>(params.points));
+  FittedMap<Map> made = fit_map<Map>(body, params.spacing, params.threads, fit);
+  return {std::move(made.map), made.worst_rms, made.where};
 }
 }  // namespace detail
 
@@ -63,11 +54,13 @@ template <SampledBody B>
 [[nodiscard]] ResponseMap<DuffingMap<typename B::Scalar>> response_map(
     const ResponseField& field, const B& body, const ResponseMapParams<typename B::Scalar>& params) {
   using S = typename B::Scalar;
-  return detail::fit_map<DuffingMap<S>>(body, params, "response_map", [&](const SurfacePoint<S>& at) {
-    return fit_duffing(response_curve<S>(field, {.position = at.position,
-                                                 .normal = at.normal,
-                                                 .radius = params.radius,
-                                                 .displacement = -params.depth * at.normal}));
+  return detail::fit_response<DuffingMap<S>>(body, params, "response_map", [&](const SurfacePoint<S>& at) {
+    return fit_duffing(response_curve<S>(field,
+                                         {.position = at.position,
+                                          .normal = at.normal,
+                                          .radius = params.radius,
+                                          .displacement = -params.depth * at.normal},
+                                         params.points));
   });
 }
 
@@ -78,17 +71,19 @@ template <SampledBody B>
 [[nodiscard]] ResponseMap<HertzMap<typename B::Scalar>> ball_response_map(
     const ResponseField& field, const B& body, const ResponseMapParams<typename B::Scalar>& params) {
   using S = typename B::Scalar;
-  return detail::fit_map<HertzMap<S>>(body, params, "ball_response_map", [&](const SurfacePoint<S>& at) {
+  return detail::fit_response<HertzMap<S>>(body, params, "ball_response_map", [&](const SurfacePoint<S>& at) {
     S curvature = S(0);
     if constexpr (HasCurvature<B>) {
       const Curvature<S> k = body.curvature(at.position);
       curvature = k.k1 + k.k2;
     }
-    return fit_hertz(response_curve<S>(field, SphereContact<S>{.position = at.position,
-                                                               .normal = at.normal,
-                                                               .radius = params.radius,
-                                                               .curvature = curvature,
-                                                               .depth = params.depth}),
+    return fit_hertz(response_curve<S>(field,
+                                       SphereContact<S>{.position = at.position,
+                                                        .normal = at.normal,
+                                                        .radius = params.radius,
+                                                        .curvature = curvature,
+                                                        .depth = params.depth},
+                                       params.points),
                      {.worst_rms = 1});  // within the fixed region curves have kinks: reported, not refused
   });
 }

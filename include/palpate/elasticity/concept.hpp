@@ -9,6 +9,7 @@
 /// | `BeamSkeletonDeformation` | the paper's (V, VI) | the paper's look at the least cost |
 /// | `HalfSpaceDeformation` | elastic: half-spaces in series | a plausible shape without any set-up |
 /// | `ResponseFieldDeformation` | elastic, by boundary elements at set-up | shape and force must be right |
+/// | `ResponseBallDeformation` | the same under a ball | the tool is a ball |
 /// | `NoDeformation` | the undeformed one | absent: forces only |
 ///
 /// `DisplacementField` is the output stage that models share: displacements of corners to vertices in your

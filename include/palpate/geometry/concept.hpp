@@ -12,6 +12,8 @@
 /// | `Superellipsoid` | between box, ellipsoid and cylinder | rounded boxes and pills                       |
 /// | `MeshSurface`    | any closed triangle mesh            | a shape from a file; exact distance to it     |
 /// | `SampledSurface` | samples of one of the others        | a mesh or superellipsoid in a fast tick       |
+/// | `GrownSurface`   | one of the others, grown by r       | the tool is a ball: its centre alone is asked |
+/// | `SharedSurface`  | handle to one of the others         | several solvers or samplers on one body       |
 ///
 /// Coordinates are the object's own [m]; give the tool's pose in them. A surface holds no state that a query
 /// changes, uses no heap in a query, and gives the same bits for the same input.

@@ -51,32 +51,27 @@ class SplineMap {
     Vec3<S> lower, upper;  ///< corners of the object's box [m]
   };
 
+  /// The nodes of the grid, in the order in which the constructor asks for them. Reports bad parameters.
+  [[nodiscard]] static std::vector<Vec3<S>> nodes(const Params& params) {
+    const Grid grid(params);
+    std::vector<Vec3<S>> all;
+    all.reserve(grid.count[0] * grid.count[1] * grid.count[2]);
+    for (std::size_t z = 0; z < grid.count[2]; ++z)
+      for (std::size_t y = 0; y < grid.count[1]; ++y)
+        for (std::size_t x = 0; x < grid.count[0]; ++x)
+          all.push_back(grid.lower +
+                        params.spacing * Vec3<S>(static_cast<S>(x), static_cast<S>(y), static_cast<S>(z)));
+    return all;
+  }
   /// coefficients(x) -> Coefficients, asked once for each node. Reports bad parameters and whatever the law
   /// reports of a node.
   template <class F>
-  SplineMap(const Params& params, const F& coefficients) : w_(params.spacing), lower_(params.lower) {
-    static constexpr const char* name = L::name;
-    require_positive(w_, name, "spacing [m] must be > 0");
-    S nodes = S(1);
-    for (int k = 0; k < 3; ++k) {
-      require_finite(params.lower[k], name, "lower [m] must be finite");
-      require_finite(params.upper[k], name, "upper [m] must be finite");
-      const S extent = params.upper[k] - params.lower[k];
-      require_non_negative(extent, name, "upper - lower [m] must be >= 0");
-      const S n = std::ceil(extent / w_) + S(3);  // one more on either side for the splines
-      nodes *= n;
-      if (!(nodes <= S(1e7L)))  // chosen: bounds the memory
-        fail(name, "spacing [m] asks for more than 10 million nodes", static_cast<double>(w_));
-      count_[static_cast<std::size_t>(k)] = static_cast<std::size_t>(n);
-    }
-    lower_ -= Vec3<S>::Constant(w_);
-    nodes_.reserve(count_[0] * count_[1] * count_[2]);
-    for (std::size_t z = 0; z < count_[2]; ++z)
-      for (std::size_t y = 0; y < count_[1]; ++y)
-        for (std::size_t x = 0; x < count_[0]; ++x) {
-          const Vec3<S> node = lower_ + w_ * Vec3<S>(static_cast<S>(x), static_cast<S>(y), static_cast<S>(z));
-          nodes_.push_back(L::pair(typename L::Law(coefficients(node)).params()));
-        }
+  SplineMap(const Params& params, const F& coefficients) : w_(params.spacing) {
+    const std::vector<Vec3<S>> all = nodes(params);
+    lower_ = all.front();
+    count_ = Grid(params).count;
+    nodes_.reserve(all.size());
+    for (const Vec3<S>& node : all) nodes_.push_back(L::pair(typename L::Law(coefficients(node)).params()));
     sharpen();
     for (const Pair& c : nodes_)
       max_depth_ = (std::min)(max_depth_, L(c, Vec3<S>::Zero(), Vec3<S>::Zero()).max_depth());
@@ -109,6 +104,29 @@ class SplineMap {
 
  private:
   using Pair = typename L::Pair;
+
+  struct Grid {
+    Vec3<S> lower;  // the first node
+    std::array<std::size_t, 3> count{};
+
+    explicit Grid(const Params& params) {
+      static constexpr const char* name = L::name;
+      require_positive(params.spacing, name, "spacing [m] must be > 0");
+      S nodes = S(1);
+      for (int k = 0; k < 3; ++k) {
+        require_finite(params.lower[k], name, "lower [m] must be finite");
+        require_finite(params.upper[k], name, "upper [m] must be finite");
+        const S extent = params.upper[k] - params.lower[k];
+        require_non_negative(extent, name, "upper - lower [m] must be >= 0");
+        const S n = std::ceil(extent / params.spacing) + S(3);  // one more on either side for the splines
+        nodes *= n;
+        if (!(nodes <= S(1e7L)))  // chosen: bounds the memory
+          fail(name, "spacing [m] asks for more than 10 million nodes", static_cast<double>(params.spacing));
+        count[static_cast<std::size_t>(k)] = static_cast<std::size_t>(n);
+      }
+      lower = params.lower - Vec3<S>::Constant(params.spacing);
+    }
+  };
 
   // The three splines along an axis that are not 0 at a position, in units of w from the first node.
   struct Axis {

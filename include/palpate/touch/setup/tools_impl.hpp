@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file Meshes of tools.hpp. Set-up only.
+
+#include <palpate/geometry/box.hpp>
+#include <palpate/geometry/cylinder.hpp>
+#include <palpate/touch/tools.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace palpate {
+
+namespace detail {
+
+inline constexpr double points_on_contact_area = 60;  // chosen: from 50 on a sum of points is within 3 %
+inline constexpr double most_points = 20000;          // chosen: a tree of that many is walked in microseconds
+inline constexpr std::size_t tool_vertices = 1500;    // chosen: chords of a circle 0.2 % below it
+
+/// Surface of revolution about y: half a circle of `radius` at each end, `length` between their centres.
+[[nodiscard]] inline MeshData<double> capsule_mesh(double radius, double length) {
+  constexpr std::uint32_t rings = 12, around = 48;  // of each end; chosen as tool_vertices
+  MeshData<double> mesh;
+  mesh.vertices.push_back({0, length / 2 + radius, 0});
+  const auto ring = [&](double angle, double shift) {
+    for (std::uint32_t k = 0; k < around; ++k) {
+      const double turn = 2 * std::numbers::pi * k / around, r = radius * std::cos(angle);
+      mesh.vertices.push_back({r * std::sin(turn), shift + radius * std::sin(angle), r * std::cos(turn)});
+    }
+  };
+  for (std::uint32_t i = 1; i <= rings; ++i) ring(std::numbers::pi / 2 * (1 - double(i) / rings), length / 2);
+  for (std::uint32_t i = 0; i < rings; ++i) ring(-std::numbers::pi / 2 * i / rings, -length / 2);
+  mesh.vertices.push_back({0, -length / 2 - radius, 0});
+  const auto last = static_cast<std::uint32_t>(mesh.vertices.size()) - 1;
+  for (std::uint32_t k = 0; k < around; ++k) {
+    const std::uint32_t next = (k + 1) % around;
+    mesh.triangles.push_back({0, 1 + k, 1 + next});
+    for (std::uint32_t i = 0; i + 1 < 2 * rings; ++i) {
+      const std::uint32_t a = 1 + i * around + k, b = 1 + i * around + next;
+      mesh.triangles.push_back({a, a + around, b + around});
+      mesh.triangles.push_back({a, b + around, b});
+    }
+    mesh.triangles.push_back({last, last - around + next, last - around + k});
+  }
+  return mesh;
+}
+
+[[nodiscard]] inline MeshTool mesh_tool(const char* where, MeshData<double> data, double nominal,
+                                        const ToolParams& params) {
+  require_non_negative(params.contact_area, where, "contact_area [m^2] must be >= 0");
+  require_non_negative(params.spacing, where, "spacing [m] must be >= 0");
+  const TriangleMesh<double> mesh(std::move(data));
+  MeshTool tool{mesh.data(), params.contact_area, params.spacing, params.centre_of_mass};
+  if (tool.contact_area == 0) tool.contact_area = nominal > 0 ? nominal : 0.1 * mesh.area();
+  if (tool.spacing == 0)
+    tool.spacing =
+        std::sqrt((std::max)(tool.contact_area / points_on_contact_area, mesh.area() / most_points));
+  return tool;
+}
+
+}  // namespace detail
+
+PALPATE_SETUP_INLINE MeshTool capsule(double radius, double length, const ToolParams& params) {
+  require_positive(radius, "capsule", "radius [m] must be > 0");
+  require_positive(length, "capsule", "length [m] must be > 0");
+  // An end that is d deep has the sum of points sum A_i d_i = pi r d^2 over A_0 times the disc's stiffness
+  // 2 E* sqrt(A_0/pi); Hertz's ball has 4/3 E* sqrt(r) d^1.5. Equal for A_0 = 2.25 pi r d.
+  constexpr double deep = 0.25;  // d / r, chosen
+  return detail::mesh_tool("capsule", detail::capsule_mesh(radius, length),
+                           2.25 * std::numbers::pi * deep * radius * radius, params);
+}
+
+PALPATE_SETUP_INLINE MeshTool cylinder(double radius, double length, const ToolParams& params) {
+  require_positive(length, "cylinder", "length [m] must be > 0");
+  const Cylinder<double> shape({.radius = radius, .half_height = length / 2});
+  return detail::mesh_tool("cylinder", shape.mesh(detail::tool_vertices), std::numbers::pi * radius * radius,
+                           params);
+}
+
+PALPATE_SETUP_INLINE MeshTool box(const Vec3<double>& size, const ToolParams& params) {
+  const Box<double> shape({.half = size / 2});
+  return detail::mesh_tool("box", shape.mesh(detail::tool_vertices), size.x() * size.z(), params);
+}
+
+PALPATE_SETUP_INLINE MeshTool tool_mesh(const MeshData<double>& mesh, const ToolParams& params) {
+  return detail::mesh_tool("tool_mesh", mesh, 0, params);
+}
+
+}  // namespace palpate

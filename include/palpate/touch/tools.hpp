@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file Rigid tools for Touch: what touches, its nominal contact area, its centre of mass. Set-up only.
+///
+/// | tool                       | tool coordinates [m]        | nominal contact area A_0              |
+/// |----------------------------|-----------------------------|---------------------------------------|
+/// | `ball(radius)`             | about the origin            | none: it grows with depth             |
+/// | `capsule(radius, length)`  | about the origin, along y   | an end, in by a quarter of its radius |
+/// | `cylinder(radius, length)` | about the origin, along y   | an end's face                         |
+/// | `box(size)`                | about the origin            | the face across y                     |
+/// | `tool_mesh(mesh)`          | the mesh's own              | a tenth of the surface                |
+
+#include <palpate/core/pose.hpp>
+#include <palpate/geometry/triangle_mesh.hpp>
+
+namespace palpate {
+
+/// A ball about the tool's origin.
+struct BallTool {
+  double radius = 0;                                   ///< [m], > 0
+  Vec3<double> centre_of_mass = Vec3<double>::Zero();  ///< [m]
+};
+
+/// Any closed mesh, felt at even points on it.
+struct MeshTool {
+  MeshData<double> mesh;
+  double contact_area = 0;                             ///< A_0 [m^2], > 0
+  double spacing = 0;                                  ///< of the points [m], > 0
+  Vec3<double> centre_of_mass = Vec3<double>::Zero();  ///< [m]
+};
+
+/// What a tool made here may be told.
+struct ToolParams {
+  Vec3<double> centre_of_mass = Vec3<double>::Zero();  ///< torques are about it [m]
+  double contact_area = 0;  ///< A_0 [m^2]: what is pressed flat on the body; 0: nominal, see above
+  double spacing = 0;       ///< of the points that feel [m]; 0: 60 on A_0, but at most 20,000 in all
+};
+
+[[nodiscard]] inline BallTool ball(double radius, const Vec3<double>& centre_of_mass = Vec3<double>::Zero()) {
+  require_positive(radius, "ball", "radius [m] must be > 0");
+  return {radius, centre_of_mass};
+}
+[[nodiscard]] MeshTool capsule(double radius, double length, const ToolParams& params = {});
+[[nodiscard]] MeshTool cylinder(double radius, double length, const ToolParams& params = {});
+[[nodiscard]] MeshTool box(const Vec3<double>& size, const ToolParams& params = {});
+/// Reports a mesh that is not closed and oriented.
+[[nodiscard]] MeshTool tool_mesh(const MeshData<double>& mesh, const ToolParams& params = {});
+
+}  // namespace palpate
+
+#ifndef PALPATE_COMPILED
+#include <palpate/touch/setup/tools_impl.hpp>
+#endif

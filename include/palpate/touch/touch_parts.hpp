@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file What Touch is made of, by the kind of tool: surface, law, regions and shape that suit it.
+///
+/// | tool       | surface                 | law, fitted to     | regions       | shape                      |
+/// |------------|-------------------------|--------------------|---------------|----------------------------|
+/// | `BallTool` | samples, grown by R     | Hertz's, spheres   | `SinglePoint` | `ResponseBallDeformation`  |
+/// | `MeshTool` | samples                 | Duffing's, discs   | `Regions<4>`  | `ResponseFieldDeformation` |
+
+#include <palpate/contact/topology.hpp>
+#include <palpate/geometry/grown_surface.hpp>
+#include <palpate/geometry/shared_surface.hpp>
+#include <palpate/law/map/duffing_map.hpp>
+#include <palpate/law/map/hertz_map.hpp>
+#include <palpate/response/ball_deformation.hpp>
+#include <palpate/response/deformation.hpp>
+#include <palpate/touch/detail/curved_surface.hpp>
+#include <palpate/touch/elastic_body.hpp>
+#include <palpate/touch/tools.hpp>
+
+namespace palpate {
+
+/// How well the law of a Touch fits the body's response field.
+struct TouchFit {
+  double worst_rms = 0;                       ///< of all positions: rms residual of F(D) over F's own rms [-]
+  Vec3<double> where = Vec3<double>::Zero();  ///< there, on the undeformed surface [m]
+  double depth = 0;                           ///< the law is fitted from 0 to here [m]
+  double law_spacing = 0;                     ///< of the positions at which it is fitted [m]
+  double sample_spacing = 0;                  ///< of the surface's samples [m]
+};
+
+namespace detail {
+
+template <class Tool>
+struct TouchParts;
+
+template <>
+struct TouchParts<BallTool> {
+  using Object = SampledSurface<GrownSurface<SharedSurface<MeshSurface<double>>>>;
+  using Force = HertzMap<double>;
+  using Contacts = SinglePoint;
+  using Shape = ResponseBallDeformation<double, CurvedSurface>;
+
+  TouchParts(const ElasticBody& body, const BallTool& ball);
+
+  PointTool<double> tool;
+  Contacts contacts{};
+  TouchFit fit;
+  Object object;
+  Force force;
+  Shape shape;
+
+ private:
+  TouchParts(const ElasticBody& body, const BallTool& ball, const CurvedSurface& curved);
+};
+
+template <>
+struct TouchParts<MeshTool> {
+  using Object = SampledSurface<SharedSurface<MeshSurface<double>>>;
+  using Force = DuffingMap<double>;
+  using Contacts = Regions<4>;
+  using Shape = ResponseFieldDeformation<double, 4>;
+
+  TouchParts(const ElasticBody& body, const MeshTool& mesh);
+
+  ToolPoints<double> tool;
+  Contacts contacts;
+  TouchFit fit;
+  Object object;
+  Force force;
+  Shape shape;
+};
+
+}  // namespace detail
+
+}  // namespace palpate
+
+#ifndef PALPATE_COMPILED
+#include <palpate/touch/setup/touch_parts_impl.hpp>
+#endif
