@@ -86,20 +86,20 @@ void point_friction(benchmark::State& state) {
 }
 template <Real S>
 void region_friction(benchmark::State& state) {
-  using Solver = ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, SingleRegion<>>;
+  using Solver = ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, SingleRegion<AreaSharing>>;
   run(state, Solver({ellipsoid<S>(), face<S>(int(state.range(0))), duffing<S>(), fibre<S>(), {}}),
       sliding<S>(S(2e-3)));
 }
 template <Real S>
 void regions_friction(benchmark::State& state) {
-  using Solver = ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<8>>;
+  using Solver = ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<8, AreaSharing>>;
   const int side = int(state.range(0));
   run(state, Solver({ellipsoid<S>(), face<S>(side), duffing<S>(), fibre<S>(), {1.5 * spacing(side)}}),
       sliding<S>(S(2e-3)));
 }
 template <Real S>
 void regions_out_of_reach(benchmark::State& state) {
-  using Solver = ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<8>>;
+  using Solver = ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<8, AreaSharing>>;
   const int side = int(state.range(0));
   run(state, Solver({ellipsoid<S>(), face<S>(side), duffing<S>(), fibre<S>(), {1.5 * spacing(side)}}),
       sliding<S>(S(-20e-3)));

@@ -44,7 +44,7 @@ inline ToolPoints<S> ball_tool() {
   return {TriangleMesh<S>(Sphere<S>({.radius = ball}).mesh(1016)), {.contact_area = 1e-4}};
 }
 template <class Object>
-using BallSolver = ContactSolver<Object, DuffingForce<S>, Frictionless<S>, SingleRegion<>>;
+using BallSolver = ContactSolver<Object, DuffingForce<S>, Frictionless<S>, SingleRegion<AreaSharing>>;
 template <class Object>
 BallSolver<Object> ball_solver(const Object& object) {
   return BallSolver<Object>({object, ball_tool(), DuffingForce<S>({.c1 = 40, .c3 = 3e8}), {}, {}, {}});

@@ -73,7 +73,7 @@ class Hash {
 
 /// The tool of the whole-loop scenes: up to 4 regions, the paper's law with friction.
 template <class Object>
-using Touch = ContactSolver<Object, DuffingForce<double>, PowerLawFriction<double>, Regions<4>>;
+using Touch = ContactSolver<Object, DuffingForce<double>, PowerLawFriction<double>, Regions<4, AreaSharing>>;
 template <class Object>
 Touch<Object> make_touch(const Object& object, int points) {
   return Touch<Object>({object, face<double>(points, 1), duffing<double>(), fibre<double>(), {joining}});

@@ -117,15 +117,15 @@ struct Bench {
     add<ContactSolver<Body, DuffingForce<S>, PowerLawFriction<S>>>(
         of + " duffing fibre point", 1, top, {surface, {}, duffing<S>(), fibre<S>(), {}});
     for (const int points : {100, 1000}) {
-      add<ContactSolver<Body, DuffingForce<S>, PowerLawFriction<S>, Regions<8>>>(
+      add<ContactSolver<Body, DuffingForce<S>, PowerLawFriction<S>, Regions<8, AreaSharing>>>(
           of + " duffing fibre regions<8>", points, top,
           {surface, face<S>(points, 1), duffing<S>(), fibre<S>(), {joining}});
     }
   }
   template <class S, std::size_t N, class Acting = AtContact>
   void regions(const char* suffix, int points) {
-    add<ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<N>, NoDeformation<S>,
-                      Acting>>(
+    add<ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<N, AreaSharing>,
+                      NoDeformation<S>, Acting>>(
         "ellipsoid duffing fibre regions<" + std::to_string(N) + ">" + suffix, points, 0.04,
         {ellipsoid<S>(), face<S>(points, int(N)), duffing<S>(), fibre<S>(), {joining}});
   }
@@ -134,8 +134,8 @@ struct Bench {
     using Coupling = RegionSkeletons<Skeleton<S>, Rule>;
     std::vector<Vec3<S>> ends;
     for (const auto& end : extremal_points(ellipsoid<S>())) ends.push_back(end.position);
-    add<ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<4>, NoDeformation<S>,
-                      AtContact, Coupling>>(
+    add<ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<4, AreaSharing>,
+                      NoDeformation<S>, AtContact, Coupling>>(
         name, points, 0.04,
         {ellipsoid<S>(),
          face<S>(points, 4),
@@ -180,9 +180,9 @@ struct Bench {
                                      {ellipsoid<S>(), {}, law, fibre<S>(), {}});
     // topologies and sharing
     for (const int points : {1, 10, 100, 1000}) {
-      add<ContactSolver<Ellipsoid<S>, DuffingForce<S>, Frictionless<S>, SingleRegion<>>>(
+      add<ContactSolver<Ellipsoid<S>, DuffingForce<S>, Frictionless<S>, SingleRegion<AreaSharing>>>(
           "ellipsoid duffing region", points, 0.04, {ellipsoid<S>(), face<S>(points, 1), law, {}, {}});
-      add<ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, SingleRegion<>>>(
+      add<ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, SingleRegion<AreaSharing>>>(
           "ellipsoid duffing fibre region", points, 0.04,
           {ellipsoid<S>(), face<S>(points, 1), law, fibre<S>(), {}});
       regions<S, 1>("", points);
@@ -195,7 +195,7 @@ struct Bench {
         "ellipsoid duffing fibre region equal-sharing", 100, 0.04,
         {ellipsoid<S>(), face<S>(100, 1), law, fibre<S>(), {}});
     regions<S, 8, AtMassCentre>(" at-mass-centre", 100);
-    add<ContactSolver<Ellipsoid<S>, TabulatedForce<S, 32>, Coulomb, Regions<8>>>(
+    add<ContactSolver<Ellipsoid<S>, TabulatedForce<S, 32>, Coulomb, Regions<8, AreaSharing>>>(
         "ellipsoid tabulated coulomb regions<8>", 100, 0.04,
         {ellipsoid<S>(), face<S>(100, 8), table, coulomb, {joining}});
     // coupling of regions (section VI)
@@ -214,7 +214,7 @@ struct Bench {
             0.04);
     body<S>("superellipsoid sampled", SampledSurface<Superellipsoid<S>>(pill, {.spacing = S(2e-3)}), 0.04);
     const MeshSurface<S> mesh(TriangleMesh<S>(ellipsoid<S>().mesh(2000)));
-    add<ContactSolver<MeshSurface<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<8>>>(
+    add<ContactSolver<MeshSurface<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<8, AreaSharing>>>(
         "mesh duffing fibre regions<8>", 100, 0.04, {mesh, face<S>(100, 1), law, fibre<S>(), {joining}});
   }
 

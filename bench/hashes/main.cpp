@@ -79,9 +79,9 @@ void body(const Output& out, const std::string& name, const Body& surface, doubl
   using Fibre = PowerLawFriction<S>;
   wrenches<ContactSolver<Body, Law, Fibre>>(out, name + " point", top,
                                             {surface, {}, duffing<S>(), fibre<S>(), {}});
-  wrenches<ContactSolver<Body, Law, Fibre, SingleRegion<>>>(
+  wrenches<ContactSolver<Body, Law, Fibre, SingleRegion<AreaSharing>>>(
       out, name + " region", top, {surface, face<S>(100, 1), duffing<S>(), fibre<S>(), {}});
-  wrenches<ContactSolver<Body, Law, Fibre, Regions<4>>>(
+  wrenches<ContactSolver<Body, Law, Fibre, Regions<4, AreaSharing>>>(
       out, name + " regions", top, {surface, face<S>(100, 4), duffing<S>(), fibre<S>(), {joining}});
 }
 
@@ -103,7 +103,7 @@ void bodies(const Output& out) {
   std::vector<typename TabulatedForce<S, 32>::Sample> samples;
   for (int i = 0; i < 32; ++i) samples.push_back({S(2e-4) * S(i), law.force(S(2e-4) * S(i))});
   const CoulombFriction<S> coulomb({.mu_static = S(0.5), .mu_dynamic = S(0.3)});
-  wrenches<ContactSolver<Ellipsoid<S>, TabulatedForce<S, 32>, CoulombFriction<S>, Regions<4>>>(
+  wrenches<ContactSolver<Ellipsoid<S>, TabulatedForce<S, 32>, CoulombFriction<S>, Regions<4, AreaSharing>>>(
       out, "tabulated law Coulomb", 0.04,
       {ellipsoid<S>(), face<S>(100, 4), TabulatedForce<S, 32>(samples), coulomb, {joining}});
   wrenches<ContactSolver<Ellipsoid<S>, HertzForce<S>, CoulombFriction<S>>>(
@@ -121,8 +121,8 @@ void bodies(const Output& out) {
   using Coupling = RegionSkeletons<Skeleton<S>>;
   std::vector<Vec3<S>> ends;
   for (const auto& end : extremal_points(ellipsoid<S>())) ends.push_back(end.position);
-  wrenches<ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<4>, NoDeformation<S>,
-                         AtContact, Coupling>>(
+  wrenches<ContactSolver<Ellipsoid<S>, DuffingForce<S>, PowerLawFriction<S>, Regions<4, AreaSharing>,
+                         NoDeformation<S>, AtContact, Coupling>>(
       out, "coupled regions", 0.04,
       {ellipsoid<S>(),
        face<S>(100, 4),

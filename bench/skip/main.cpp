@@ -125,19 +125,19 @@ struct point_friction {
 struct region {
   template <class S, class P = Parts<S>>
   static auto make() {
-    using T = Solver<S, None, SingleRegion<>>;
+    using T = Solver<S, None, SingleRegion<AreaSharing>>;
     return Scene<T>{T({P::body(), P::face(), P::law()})};
   }
 };
 struct region_friction {
   template <class S, class P = Parts<S>>
   static auto make() {
-    using T = Solver<S, typename P::Fibre, SingleRegion<>>;
+    using T = Solver<S, typename P::Fibre, SingleRegion<AreaSharing>>;
     return Scene<T>{T({P::body(), P::face(), P::law(), P::fibre()})};
   }
 };
 template <class S>
-using Several = Solver<S, typename Parts<S>::Fibre, Regions<8>>;
+using Several = Solver<S, typename Parts<S>::Fibre, Regions<8, AreaSharing>>;
 struct regions_friction {
   template <class S, class P = Parts<S>>
   static auto make() {
@@ -148,7 +148,8 @@ struct regions_friction {
 struct regions_coupled {
   template <class S, class P = Parts<S>>
   static auto make() {
-    using T = Solver<S, typename P::Fibre, Regions<8>, AtContact, RegionSkeletons<typename P::Beams>>;
+    using T =
+        Solver<S, typename P::Fibre, Regions<8, AreaSharing>, AtContact, RegionSkeletons<typename P::Beams>>;
     return Scene<T>{T({P::body(), P::face(S(1e-3)), P::law(), P::fibre(), {1.5e-3}, {}, P::beams()})};
   }
 };

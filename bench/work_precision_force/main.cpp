@@ -173,12 +173,12 @@ void region_force(const Table& table, bool quick) {
     if (quick && n > 5000) continue;
     // A grid's sum of a function that ends with a kink: below 1/n is the second order it must have, 2 the
     // constant.
-    measure("palpate by area square grid", grid(n, false), SingleRegion<>{},
+    measure("palpate by area square grid", grid(n, false), SingleRegion<AreaSharing>{},
             n >= 64 ? 2.0 / std::sqrt(double(n)) : 0);
-    measure("palpate by area hexagonal grid", grid(n, true), SingleRegion<>{});
-    measure("palpate by area rings", rings(n), SingleRegion<>{});
+    measure("palpate by area hexagonal grid", grid(n, true), SingleRegion<AreaSharing>{});
+    measure("palpate by area rings", rings(n), SingleRegion<AreaSharing>{});
     measure("palpate equal sharing (the paper's m/n)", grid(n, false), SingleRegion<EqualSharing>{});
-    measure("random points by area", random_points(n), SingleRegion<>{});
+    measure("random points by area", random_points(n), SingleRegion<AreaSharing>{});
   }
 }
 
@@ -348,7 +348,7 @@ void whole_tick(const Table& table, double bound) {
   const EllipsoidPoint<Long> exact{Vec3<Long>(0.06L, 0.04L, 0.04L)};
   for (const int points : {1, 10, 100, 1000}) {
     const ToolPoints<S> tool = face<S>(points, 1);
-    ContactSolver<Ellipsoid<S>, DuffingForce<S>, Frictionless<S>, SingleRegion<>> solver(
+    ContactSolver<Ellipsoid<S>, DuffingForce<S>, Frictionless<S>, SingleRegion<AreaSharing>> solver(
         {ellipsoid<S>(), tool, duffing<S>(), {}, {}});
     double error = 0;
     for (std::size_t i = 0; i < poses.size(); i += 16) {

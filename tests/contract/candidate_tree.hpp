@@ -191,7 +191,7 @@ class CandidateTreeSuite {
     static_assert(ContactSurface<Theirs>);
     const LinearForce<S> law({.k = S(200)});
     const CoulombFriction<S> dry({.mu_static = S(0.5), .mu_dynamic = S(0.3)});
-    using Contacts = SingleRegion<>;
+    using Contacts = SingleRegion<AreaSharing>;
     ContactSolver<Own, LinearForce<S>, CoulombFriction<S>, Contacts> solver({own, tool, law, dry, {}, {}});
     ContactSolver<Theirs, LinearForce<S>, CoulombFriction<S>, Contacts> other(
         {theirs, tool, law, dry, {}, {}});

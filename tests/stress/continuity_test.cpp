@@ -120,9 +120,9 @@ void check_surface(const char* name, const Body& body, S deepest, S normal_facto
 
   const Worst point = wander<ContactSolver<Body, DuffingForce<S>, Default, SinglePoint>>(
       {body, {}, law, fibre<Default>(), {}}, body, tip, 0, deepest, paths_per_surface, seed);
-  const Worst region = wander<ContactSolver<Body, DuffingForce<S>, Default, SingleRegion<>>>(
+  const Worst region = wander<ContactSolver<Body, DuffingForce<S>, Default, SingleRegion<AreaSharing>>>(
       {body, tool, law, fibre<Default>(), {}}, body, outline, radius, deepest, region_paths, seed);
-  const Worst regions = wander<ContactSolver<Body, DuffingForce<S>, Default, Regions<4>>>(
+  const Worst regions = wander<ContactSolver<Body, DuffingForce<S>, Default, Regions<4, AreaSharing>>>(
       {body, tool, law, fibre<Default>(), {6e-4}}, body, outline, radius, deepest, region_paths, seed);
   const Worst literal = wander<ContactSolver<Body, DuffingForce<S>, Literal, Regions<4, EqualSharing>>>(
       {body, tool, law, fibre<Literal>(), {6e-4}}, body, outline, radius, deepest, region_paths / 5, seed);

@@ -126,8 +126,9 @@ template <class Friction, class Model>
 Figures measure(const char* name, const Friction& friction, Model model, int ticks = 1000) {
   const ToolPoints<S> tool(TriangleMesh<S>(Sphere<S>({.radius = radius}).mesh(300)), {.contact_area = 5e-5});
   const LinearForce<S> law({.k = 800});
-  using Rest = ContactSolver<Ellipsoid<S>, LinearForce<S>, Friction, SingleRegion<>>;
-  using Now = ContactSolver<DeformedSurface<Ellipsoid<S>>, LinearForce<S>, Friction, SingleRegion<>>;
+  using Rest = ContactSolver<Ellipsoid<S>, LinearForce<S>, Friction, SingleRegion<AreaSharing>>;
+  using Now =
+      ContactSolver<DeformedSurface<Ellipsoid<S>>, LinearForce<S>, Friction, SingleRegion<AreaSharing>>;
   std::vector<V> places = skin.vertices();
   const auto follow = [&](Now& solver, Energy& e) {
     if (model.write(solver.contacts(), VertexBuffer<S>{.positions = places.front().data()}).vertices == 0)

@@ -39,7 +39,7 @@ ToolPoints<double> two_feet() {
 }  // namespace
 
 TEST_CASE("friction pays nothing for merging regions: forward as two regions, back as one, six times") {
-  ContactSolver<Box<double>, LinearForce<double>, CoulombFriction<double>, Regions<4>> solver(
+  ContactSolver<Box<double>, LinearForce<double>, CoulombFriction<double>, Regions<4, AreaSharing>> solver(
       {.object = block,
        .tool = two_feet(),
        .force = spring,
@@ -85,12 +85,12 @@ TEST_CASE("friction pays nothing for merging regions: forward as two regions, ba
 
 TEST_CASE("a rate term does not see regions merge: at constant speed the force follows the depth") {
   using Damped = DampedForce<LinearForce<double>>;
-  ContactSolver<Box<double>, Damped, Frictionless<double>, Regions<4>> solver(
+  ContactSolver<Box<double>, Damped, Frictionless<double>, Regions<4, AreaSharing>> solver(
       {.object = block,
        .tool = two_feet(),
        .force = Damped(spring, {.damping = 10}),
        .contacts = {.distance = 6e-4}});
-  ContactSolver<Box<double>, LinearForce<double>, Frictionless<double>, Regions<4>> still(
+  ContactSolver<Box<double>, LinearForce<double>, Frictionless<double>, Regions<4, AreaSharing>> still(
       {.object = block, .tool = two_feet(), .force = spring, .contacts = {.distance = 6e-4}});
   for (int i = 0; i < 300; ++i) {  // 1 mm/s inwards, at 1 kHz
     const Pose<double> X = at(0, 1e-6 * (i + 0.5));
@@ -105,13 +105,15 @@ TEST_CASE("beyond a law's maximum a resting tool has no rate, and radial skew ke
   using Capped = SaturatedForce<LinearForce<double>>;
   const Capped capped(spring, {.limit = 0.1});
   const ToolPoints<double> big({V::Zero()}, {3e-6}, {.contact_area = 1e-6});  // three times the law's share
-  ContactSolver<Box<double>, DampedForce<Capped>, Frictionless<double>, SingleRegion<>> damped(
+  ContactSolver<Box<double>, DampedForce<Capped>, Frictionless<double>, SingleRegion<AreaSharing>> damped(
       {.object = block, .tool = big, .force = DampedForce<Capped>(capped, {.damping = 1})});
-  ContactSolver<Box<double>, Capped, CoulombFriction<double, ReturnMapping, Radial>, SingleRegion<>> radial(
-      {.object = block,
-       .tool = big,
-       .force = capped,
-       .friction = CoulombFriction<double, ReturnMapping, Radial>({.mu_static = 0.5, .mu_dynamic = 0.4})});
+  ContactSolver<Box<double>, Capped, CoulombFriction<double, ReturnMapping, Radial>,
+                SingleRegion<AreaSharing>>
+      radial({.object = block,
+              .tool = big,
+              .force = capped,
+              .friction =
+                  CoulombFriction<double, ReturnMapping, Radial>({.mu_static = 0.5, .mu_dynamic = 0.4})});
   for (int i = 0; i < 3; ++i) CHECK_RELATIVE(damped.tick(at(0, 2e-3), 1e-3).wrench.force.y(), 0.3, 1e-12);
   CHECK_RELATIVE(radial.tick(at(0, 2e-3)).wrench.force.y(), 0.3, 1e-12);
   // 1 um aside: F changes by at most the law's stiffness times that, and not to a third.

@@ -29,7 +29,7 @@ template <class Object>
 std::vector<V> forces(const Object& object) {
   const ToolPoints<double> tool(TriangleMesh<double>(Sphere<double>({.radius = 0.01}).mesh(200)),
                                 {.contact_area = 1e-4});
-  ContactSolver<Object, DuffingForce<double>, Frictionless<double>, SingleRegion<>> solver(
+  ContactSolver<Object, DuffingForce<double>, Frictionless<double>, SingleRegion<AreaSharing>> solver(
       {object, tool, DuffingForce<double>({.c1 = 40, .c3 = 3e8}), {}, {}, {}});
   std::mt19937_64 random(5);
   std::uniform_real_distribution<double> unit(0, 1);

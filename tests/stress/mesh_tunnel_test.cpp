@@ -32,7 +32,7 @@ struct Throws {
 // Ticks until the device is well past the plate, and then straight back.
 template <class Object>
 Throws throw_many(const Object& object, int count, bool sweep_them) {
-  ContactSolver<Object, LinearForce<double>, Frictionless<double>, SingleRegion<>> solver(
+  ContactSolver<Object, LinearForce<double>, Frictionless<double>, SingleRegion<AreaSharing>> solver(
       {object, tool, LinearForce<double>({.k = 1000}), {}, {}, {}});
   std::mt19937_64 random(20240801);
   std::uniform_real_distribution<double> unit(-1, 1);

@@ -18,16 +18,17 @@ namespace palpate {
 PALPATE_TEST_SOLVER
 ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SinglePoint>;
 PALPATE_TEST_SOLVER
-ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<>>;
+ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<AreaSharing>>;
 PALPATE_TEST_SOLVER
-ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4>>;
+ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4, AreaSharing>>;
 PALPATE_TEST_SOLVER
 ContactSolver<Ellipsoid<double>, DuffingForce<double>, PowerLawFriction<double>, SinglePoint>;
 PALPATE_TEST_SOLVER
-ContactSolver<Ellipsoid<double>, DuffingForce<double>, PowerLawFriction<double>, SingleRegion<>>;
+ContactSolver<Ellipsoid<double>, DuffingForce<double>, PowerLawFriction<double>, SingleRegion<AreaSharing>>;
 PALPATE_TEST_SOLVER
-ContactSolver<Ellipsoid<double>, DuffingForce<double>, PowerLawFriction<double>, Regions<4>>;
-PALPATE_TEST_SOLVER ContactSolver<Box<double>, DuffingForce<double>, PowerLawFriction<double>, Regions<4>>;
+ContactSolver<Ellipsoid<double>, DuffingForce<double>, PowerLawFriction<double>, Regions<4, AreaSharing>>;
+PALPATE_TEST_SOLVER
+    ContactSolver<Box<double>, DuffingForce<double>, PowerLawFriction<double>, Regions<4, AreaSharing>>;
 #undef PALPATE_TEST_SOLVER
 
 }  // namespace palpate

@@ -66,6 +66,13 @@ struct RegionSum {
     torque += arm.cross(f);
   }
 
+  /// Another force [N] and torque [N m] in place of the sum's, of this exit direction.
+  void hold(const Vec3<S>& held_force, const Vec3<S>& held_torque, const Vec3<S>& held_exit) noexcept {
+    force = held_force;
+    torque = held_torque;
+    exit = held_exit;
+  }
+
   /// Multiplies every force by `factor` [-].
   void scale(S factor) noexcept {
     force *= factor;
@@ -99,9 +106,11 @@ struct RegionSum {
 template <Real S>
 class PointForce {
  public:
-  Vec3<S> force = Vec3<S>::Zero();   ///< on the tool [N]
-  Vec3<S> torque = Vec3<S>::Zero();  ///< about the tool's centre of mass [N m]
-  S deepest = S(0);                  ///< delta [m]
+  Vec3<S> force = Vec3<S>::Zero();     ///< on the tool [N]
+  Vec3<S> torque = Vec3<S>::Zero();    ///< about the tool's centre of mass [N m]
+  Vec3<S> exit = Vec3<S>::UnitY();     ///< exit direction, unit
+  Vec3<S> position = Vec3<S>::Zero();  ///< [m]
+  S deepest = S(0);                    ///< delta [m]
   std::uint32_t points = 0;
 
   /// As RegionSum's; the area is not used.
@@ -111,13 +120,19 @@ class PointForce {
     torque = arm.cross(force);
     deepest = depth;
     points = 1;
-    position_ = x;
-    normal_ = gradient;
+    position = x;
+    exit = gradient;
     normal_force_ = f;
     const S square = gradient.squaredNorm();  // of a unit vector off 1 by its roundings
     if (std::abs(square - S(1)) <= S(8) * std::numeric_limits<S>::epsilon()) return;
-    normal_ = unit_or<S>(gradient, Vec3<S>::UnitY());  // over an edge: geometry/concept.hpp
+    exit = unit_or<S>(gradient, Vec3<S>::UnitY());  // over an edge: geometry/concept.hpp
     normal_force_ = f * std::sqrt(square);
+  }
+  void hold(const Vec3<S>& held_force, const Vec3<S>& held_torque, const Vec3<S>& held_exit) noexcept {
+    force = held_force;
+    torque = held_torque;
+    exit = held_exit;
+    normal_force_ = force.norm();
   }
   void scale(S factor) noexcept {
     force *= factor;
@@ -125,12 +140,11 @@ class PointForce {
     normal_force_ *= factor;
   }
   [[nodiscard]] S area() const noexcept { return S(0); }
-  [[nodiscard]] Vec3<S> centre() const noexcept { return position_; }
+  [[nodiscard]] Vec3<S> centre() const noexcept { return position; }
   [[nodiscard]] S normal_force() const noexcept { return normal_force_; }
-  [[nodiscard]] Vec3<S> normal() const noexcept { return normal_; }
+  [[nodiscard]] Vec3<S> normal() const noexcept { return exit; }
 
  private:
-  Vec3<S> position_ = Vec3<S>::Zero(), normal_ = Vec3<S>::UnitY();
   S normal_force_ = S(0);
 };
 

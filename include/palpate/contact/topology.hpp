@@ -26,7 +26,7 @@ struct SinglePoint {
   using Tool = PointTool<S>;
 };
 
-template <MassSharing W = AreaSharing>
+template <MassSharing W = SurfacePressure>
 struct SingleRegion {
   static constexpr std::size_t max_regions = 1;
   using Sharing = W;
@@ -35,7 +35,7 @@ struct SingleRegion {
 };
 
 /// Regions are the connected components of the graph that joins touching points nearer than `distance`.
-template <std::size_t N, MassSharing W = AreaSharing>
+template <std::size_t N, MassSharing W = SurfacePressure>
 struct Regions {
   static_assert(N >= 1 && N <= 64, "palpate::Regions<N>: 1 <= N <= 64");
   static constexpr std::size_t max_regions = N;

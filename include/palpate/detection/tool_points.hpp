@@ -22,11 +22,14 @@ struct PointTool {
 /// |--------|---------------------|------|---------------------------------------------------|
 /// | x_i    | `point(i)`          | m    | finite, below 1e6; 1 to 10 million points         |
 /// | A_i    | `area(i)`           | m^2  | > 0                                               |
+/// | a_i    | `vector_areas()[i]` | m^2  | finite, outward; empty where they are not known   |
 /// | A_0    | `contact_area`      | m^2  | > 0; the law's stiffness is that of this area     |
 /// |        | `centre_of_mass`    | m    | finite; torques are about it                      |
 ///
 /// A_0 belongs to the tool (a mallet's face, a pin's tip), not to the tick: a point carries A_i / A_0 of the
-/// force law.
+/// force law. a_i is the outward area vector, the sum of a third of the adjacent triangles': of length A_i on
+/// a flat face, shorter over an edge. It is known where the tool is a mesh; `SurfacePressure` needs it
+/// (contact/mass_sharing.hpp).
 ///
 /// Points are sorted by position: `original(i)` is the number that point i had when it was given. The tree's
 /// nodes are in pre-order, a node's points are contiguous, leaves have at most `batch_size`; a walk needs no
@@ -49,7 +52,25 @@ class ToolPoints {
     std::uint32_t begin, end, skip;
   };
 
-  /// Points and areas as given, n x 3 and n.
+  /// Points, areas and, unless empty, vector areas as given: n x 3, n, n x 3.
+  ToolPoints(const SurfaceSamples<S>& samples, const Params& params)
+      : ToolPoints(samples.points, samples.areas, params) {
+    constexpr const char* where = "ToolPoints";
+    if (samples.vector_areas.empty()) return;
+    if (samples.vector_areas.size() != size())
+      fail(where, "needs one vector area for each point, points minus vector areas must be 0",
+           static_cast<double>(size()) - static_cast<double>(samples.vector_areas.size()));
+    for (const std::uint32_t i : original_) {
+      const Vec3<S>& a = samples.vector_areas[i];
+      for (int k = 0; k < 3; ++k) {
+        if (!is_finite(a[k]))
+          fail_at(where, "vector area [m^2] must be finite", "point", i, static_cast<double>(a[k]));
+      }
+      vector_areas_.push_back(a);
+    }
+  }
+
+  /// Points and areas as given, n x 3 and n: without vector areas.
   ToolPoints(const std::vector<Vec3<S>>& points, const std::vector<S>& areas, const Params& params)
       : contact_area_(params.contact_area), centre_of_mass_(params.centre_of_mass) {
     constexpr const char* where = "ToolPoints";
@@ -93,14 +114,12 @@ class ToolPoints {
 
   /// The mesh's vertices and vertex areas.
   ToolPoints(const TriangleMesh<S>& mesh, const Params& params)
-      : ToolPoints(mesh.vertices(), mesh.vertex_areas(), params) {}
+      : ToolPoints(SurfaceSamples<S>{mesh.vertices(), mesh.vertex_areas(), mesh.vertex_vector_areas()},
+                   params) {}
 
   /// Even points on the mesh about `spacing` [m] apart.
   ToolPoints(const TriangleMesh<S>& mesh, const Params& params, S spacing)
       : ToolPoints(resample(mesh, spacing), params) {}
-
-  ToolPoints(const SurfaceSamples<S>& samples, const Params& params)
-      : ToolPoints(samples.points, samples.areas, params) {}
 
   [[nodiscard]] std::size_t size() const noexcept { return points_.size(); }
   [[nodiscard]] const Vec3<S>& point(std::size_t i) const noexcept { return points_[i]; }
@@ -108,6 +127,8 @@ class ToolPoints {
   [[nodiscard]] std::uint32_t original(std::size_t i) const noexcept { return original_[i]; }
   [[nodiscard]] std::span<const Vec3<S>> points() const noexcept { return points_; }
   [[nodiscard]] std::span<const S> areas() const noexcept { return areas_; }
+  /// a_i [m^2]; empty where they are not known.
+  [[nodiscard]] std::span<const Vec3<S>> vector_areas() const noexcept { return vector_areas_; }
   [[nodiscard]] S contact_area() const noexcept { return contact_area_; }
   [[nodiscard]] Vec3<S> centre_of_mass() const noexcept { return centre_of_mass_; }
   /// The `batch_size` points from `begin` on, where a leaf begins; the last leaf is filled up with its last
@@ -152,6 +173,7 @@ class ToolPoints {
   std::vector<Vec3<S>> points_;
   std::vector<PointBatch<S>> batches_;  // the same points, leaf by leaf
   std::vector<S> areas_;
+  std::vector<Vec3<S>> vector_areas_;  // or none
   std::vector<std::uint32_t> original_;
   std::vector<Node> nodes_;
   S contact_area_;

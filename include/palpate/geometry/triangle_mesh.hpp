@@ -18,6 +18,7 @@ namespace palpate {
 /// | name                   | unit | what                                                              |
 /// |------------------------|------|-------------------------------------------------------------------|
 /// | `vertex_areas()`       | m^2  | a third of the adjacent triangles' area each; they sum to `area()` |
+/// | `vertex_vector_areas()` | m^2 | a third of the adjacent triangles' outward area vectors each: sum 0 |
 /// | `vertex_normals()`     | -    | outward, unit, weighted by the angle at the vertex [thurmer1998]   |
 /// | `area()`, `volume()`   | m^2, m^3 | of the surface and of what it encloses                         |
 /// | `centroid()`           | m    | of what it encloses: the centre of mass of a homogeneous body     |
@@ -45,6 +46,9 @@ class TriangleMesh {
     return data_.triangles;
   }
   [[nodiscard]] const std::vector<S>& vertex_areas() const noexcept { return vertex_areas_; }
+  [[nodiscard]] const std::vector<Vec3<S>>& vertex_vector_areas() const noexcept {
+    return vertex_vector_areas_;
+  }
   [[nodiscard]] const std::vector<Vec3<S>>& vertex_normals() const noexcept { return vertex_normals_; }
   [[nodiscard]] S area() const noexcept { return area_; }
   [[nodiscard]] S volume() const noexcept { return volume_; }
@@ -59,6 +63,7 @@ class TriangleMesh {
     const auto at = [&](std::uint32_t v) { return Vec3<W>(data_.vertices[v].template cast<W>()); };
     const Vec3<W> origin = at(data_.triangles[0][0]);
     std::vector<W> areas(data_.vertices.size(), W(0));
+    std::vector<Vec3<W>> vector_areas(data_.vertices.size(), Vec3<W>::Zero());
     std::vector<Vec3<W>> normals(data_.vertices.size(), Vec3<W>::Zero());
     W area = 0, volume = 0;
     Vec3<W> moment = Vec3<W>::Zero();
@@ -72,6 +77,7 @@ class TriangleMesh {
       for (std::size_t k = 0; k < 3; ++k) {
         const Vec3<W> e = p[(k + 1) % 3] - p[k], f = p[(k + 2) % 3] - p[k];
         areas[t[k]] += length / 6;
+        vector_areas[t[k]] += twice / 6;
         normals[t[k]] += std::atan2(length, e.dot(f)) / length * twice;
       }
     }
@@ -84,6 +90,7 @@ class TriangleMesh {
       upper_ = upper_.cwiseMax(v);
     }
     for (const W a : areas) vertex_areas_.push_back(static_cast<S>(a));
+    for (const Vec3<W>& a : vector_areas) vertex_vector_areas_.push_back(a.template cast<S>());
     // Where the triangles cancel, as at the tip of a flat spike, no direction is better than another.
     for (const Vec3<W>& n : normals)
       vertex_normals_.push_back(unit_or<W>(n, Vec3<W>::UnitX()).template cast<S>());
@@ -91,7 +98,7 @@ class TriangleMesh {
 
   MeshData<S> data_;
   std::vector<S> vertex_areas_;
-  std::vector<Vec3<S>> vertex_normals_;
+  std::vector<Vec3<S>> vertex_vector_areas_, vertex_normals_;
   S area_{}, volume_{};
   Vec3<S> centroid_, lower_, upper_;
 };

@@ -209,9 +209,9 @@ TEST_CASE("the user's rate term, his law for several depths at once, and his map
   CHECK_RELATIVE(cushion.tick(at(0, -1.5e-3), 1e-3).wrench.force.y(), 0.15 * (1 + 2 * 0.5), 1e-12);
 
   static_assert(HasForces<Softer, double> && !HasForces<Spring, double>);
-  ContactSolver<Ground, Spring, Frictionless<double>, SingleRegion<>> one(
+  ContactSolver<Ground, Spring, Frictionless<double>, SingleRegion<AreaSharing>> one(
       {.object = {}, .tool = pins(), .force = {100}});
-  ContactSolver<Ground, Softer, Frictionless<double>, SingleRegion<>> several(
+  ContactSolver<Ground, Softer, Frictionless<double>, SingleRegion<AreaSharing>> several(
       {.object = {}, .tool = pins(), .force = {{100}}});
   CHECK(one.tick(at(0, -1e-3)).wrench.force == several.tick(at(0, -1e-3)).wrench.force);
 
@@ -229,9 +229,9 @@ TEST_CASE("the user's rate term, his law for several depths at once, and his map
 }
 
 TEST_CASE("the user's tree: what it calls apart is not asked, the rest is as without it") {
-  ContactSolver<CandidatesFrom<Ground, NearOrigin>, Spring, Frictionless<double>, SingleRegion<>> solver(
-      {.object = {Ground{}, NearOrigin{0.1}}, .tool = pins(), .force = {100}});
-  ContactSolver<Ground, Spring, Frictionless<double>, SingleRegion<>> without(
+  ContactSolver<CandidatesFrom<Ground, NearOrigin>, Spring, Frictionless<double>, SingleRegion<AreaSharing>>
+      solver({.object = {Ground{}, NearOrigin{0.1}}, .tool = pins(), .force = {100}});
+  ContactSolver<Ground, Spring, Frictionless<double>, SingleRegion<AreaSharing>> without(
       {.object = {}, .tool = pins(), .force = {100}});
   for (const double y : {1e-3, -1e-3, -2e-3})
     CHECK(solver.tick(at(0, y)).wrench.force == without.tick(at(0, y)).wrench.force);

@@ -54,20 +54,20 @@ TEST_CASE("absent friction: its functions may be deleted and its rules are never
   CHECK(F > 0);
   CHECK(force_at_1mm<Probe>({}, SinglePoint{}) == F);
   CHECK(force_at_1mm<LoadedProbe>({}, SinglePoint{}) == F);
-  const double in_region = force_at_1mm<Frictionless<double>>(one, SingleRegion<>{});
+  const double in_region = force_at_1mm<Frictionless<double>>(one, SingleRegion<AreaSharing>{});
   CHECK_RELATIVE(in_region, F, 100e-16);  // 30 mm - 29 mm: the depth's rounding is 30 times its own
-  CHECK(force_at_1mm<Probe>(one, SingleRegion<>{}) == in_region);
-  CHECK(force_at_1mm<LoadedProbe>(one, SingleRegion<>{}) == in_region);
-  CHECK(force_at_1mm<Probe>(one, Regions<4>{1e-3}) == in_region);
-  CHECK(force_at_1mm<LoadedProbe>(one, Regions<4>{1e-3}) == in_region);
+  CHECK(force_at_1mm<Probe>(one, SingleRegion<AreaSharing>{}) == in_region);
+  CHECK(force_at_1mm<LoadedProbe>(one, SingleRegion<AreaSharing>{}) == in_region);
+  CHECK(force_at_1mm<Probe>(one, Regions<4, AreaSharing>{1e-3}) == in_region);
+  CHECK(force_at_1mm<LoadedProbe>(one, Regions<4, AreaSharing>{1e-3}) == in_region);
 }
 
 TEST_CASE("sizes: frictionless point < friction < region < N regions, and an absent policy costs no byte") {
   using Dry = CoulombFriction<double>;
   constexpr std::size_t bare = sizeof(Solver<Frictionless<double>, SinglePoint>);
   constexpr std::size_t dry = sizeof(Solver<Dry, SinglePoint>);
-  constexpr std::size_t region = sizeof(Solver<Dry, SingleRegion<>>);
-  constexpr std::size_t regions = sizeof(Solver<Dry, Regions<4>>);
+  constexpr std::size_t region = sizeof(Solver<Dry, SingleRegion<AreaSharing>>);
+  constexpr std::size_t regions = sizeof(Solver<Dry, Regions<4, AreaSharing>>);
   MESSAGE("bytes: ", bare, " < ", dry, " < ", region, " < ", regions);
   CHECK(bare < dry);
   CHECK(dry < region);

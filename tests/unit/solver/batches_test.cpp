@@ -54,7 +54,7 @@ TEST_CASE(
       CHECK(touching > 10);
     };
     INFO("points ", n * n);
-    compare(SingleRegion<>{});
-    compare(Regions<4>{.distance = 1.5e-3});
+    compare(SingleRegion<AreaSharing>{});
+    compare(Regions<4, AreaSharing>{.distance = 1.5e-3});
   }
 }

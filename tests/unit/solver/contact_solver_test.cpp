@@ -45,7 +45,7 @@ TEST_CASE_TEMPLATE("a contact's depth is its deepest point's, a single point's i
   REQUIRE(point.contacts().size() == 1);
   CHECK(point.contacts()[0].depth == -point.contacts()[0].displacement.y());
 
-  using Ball = ContactSolver<Box<S>, DuffingForce<S>, Frictionless<S>, SingleRegion<>>;
+  using Ball = ContactSolver<Box<S>, DuffingForce<S>, Frictionless<S>, SingleRegion<AreaSharing>>;
   const TriangleMesh<S> mesh(Sphere<S>({.radius = S(0.004)}).mesh(200));
   Ball ball({.object = body,
              .tool = ToolPoints<S>(mesh, {.contact_area = S(1e-4)}, S(1e-3)),
@@ -145,11 +145,11 @@ TEST_CASE("a rate-dependent law uses dt, and only dt that makes sense") {
 }
 
 TEST_CASE("force at the mass centre: the paper's form has no torque") {
-  ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<>,
+  ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<AreaSharing>,
                 NoDeformation<double>, AtMassCentre>
       paper({.object = egg, .tool = face(5, 1e-3, 1e-5), .force = law, .friction = dry});
-  ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<>> full(
-      {.object = egg, .tool = face(5, 1e-3, 1e-5), .force = law, .friction = dry});
+  ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<AreaSharing>>
+      full({.object = egg, .tool = face(5, 1e-3, 1e-5), .force = law, .friction = dry});
   for (int i = 0; i < 100; ++i) {
     const Pose<double> X = at(0.01 + 1e-5 * i, 0.0385, 0);
     const auto a = paper.tick(X), b = full.tick(X);
@@ -161,12 +161,12 @@ TEST_CASE("force at the mass centre: the paper's form has no torque") {
 
 TEST_CASE("the same poses give the same bits") {
   const auto run = [] {
-    ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4>> solver(
-        {.object = egg,
-         .tool = face(9, 1e-3, 4e-5),
-         .force = law,
-         .friction = dry,
-         .contacts = {.distance = 1.5e-3}});
+    ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4, AreaSharing>>
+        solver({.object = egg,
+                .tool = face(9, 1e-3, 4e-5),
+                .force = law,
+                .friction = dry,
+                .contacts = {.distance = 1.5e-3}});
     std::vector<double> all;
     for (int i = 0; i < 500; ++i) {
       const auto w = solver.tick(at(2e-5 * i, 0.0385 + 1e-3 * std::sin(0.05 * i), 1e-5 * i)).wrench;
@@ -228,12 +228,12 @@ TEST_CASE("nothing moved: from the third tick at a pose on nothing is worked out
 }
 
 TEST_CASE("a tick takes no heap") {
-  ContactSolver<Ellipsoid<double>, DuffingForce<double>, PowerLawFriction<double>, Regions<4>> solver(
-      {.object = egg,
-       .tool = face(9, 1e-3, 4e-5),
-       .force = law,
-       .friction = PowerLawFriction<double>({.K = 0.562, .beta = 0.75, .mu_dynamic = 0.3}),
-       .contacts = {.distance = 1.2e-3}});
+  ContactSolver<Ellipsoid<double>, DuffingForce<double>, PowerLawFriction<double>, Regions<4, AreaSharing>>
+      solver({.object = egg,
+              .tool = face(9, 1e-3, 4e-5),
+              .force = law,
+              .friction = PowerLawFriction<double>({.K = 0.562, .beta = 0.75, .mu_dynamic = 0.3}),
+              .contacts = {.distance = 1.2e-3}});
   const test::HeapCount guard;
   for (int i = 0; i < 500; ++i) {
     Pose<double> X = at(2e-5 * i, 0.0385 + 2e-3 * std::sin(0.05 * i), 1e-5 * i);

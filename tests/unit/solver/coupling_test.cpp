@@ -20,10 +20,11 @@ namespace {
 const Ellipsoid<double> egg({.axes = V(0.06, 0.04, 0.04)});
 using Beams = Skeleton<double>;
 template <class Rule>
-using Coupled = ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4>,
-                              NoDeformation<double>, AtContact, RegionSkeletons<Beams, Rule>>;
+using Coupled =
+    ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4, AreaSharing>,
+                  NoDeformation<double>, AtContact, RegionSkeletons<Beams, Rule>>;
 using Independent =
-    ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4>>;
+    ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4, AreaSharing>>;
 
 /// Two pins 30 mm apart, each of nine points.
 ToolPoints<double> compass() {

@@ -16,9 +16,9 @@ using namespace palpate::test;
 
 TEST_CASE("region: force and torque equal the sum over the points, and do not depend on the clustering") {
   const ToolPoints<double> tool = face(9, 1e-3, 4e-5);
-  ContactSolver<Ellipsoid<double>, DuffingForce<double>, Frictionless<double>, SingleRegion<>> one(
+  ContactSolver<Ellipsoid<double>, DuffingForce<double>, Frictionless<double>, SingleRegion<AreaSharing>> one(
       {.object = egg, .tool = tool, .force = law});
-  ContactSolver<Ellipsoid<double>, DuffingForce<double>, Frictionless<double>, Regions<8>> many(
+  ContactSolver<Ellipsoid<double>, DuffingForce<double>, Frictionless<double>, Regions<8, AreaSharing>> many(
       {.object = egg, .tool = tool, .force = law, .contacts = {.distance = 0.5e-3}});
   Pose<double> X = at(0.012, 0.038, 0.003);
   X.rotation = test::rotation_about<double>(V(1, 2, 2) / 3, 0.3);
@@ -53,8 +53,8 @@ TEST_CASE("region: force and torque equal the sum over the points, and do not de
 
 TEST_CASE(
     "equivalent contact: the law at its depth gives the region's force, and its origin is on the surface") {
-  ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<>> solver(
-      {.object = egg, .tool = face(11, 1e-3, 1e-4), .force = law, .friction = dry});
+  ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<AreaSharing>>
+      solver({.object = egg, .tool = face(11, 1e-3, 1e-4), .force = law, .friction = dry});
   for (int i = 0; i <= 200; ++i) (void)solver.tick(at(-0.005 + 5e-5 * i, 0.0385, 0));
   REQUIRE(solver.contacts().size() == 1);
   const ContactState<double>& c = solver.contacts()[0];
@@ -69,12 +69,12 @@ TEST_CASE(
 TEST_CASE("one point of the whole nominal area is the single point") {
   ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>> point(
       {.object = egg, .tool = {V::Zero(), V(0, 0.03, 0)}, .force = law, .friction = dry});
-  ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<2>> regions(
-      {.object = egg,
-       .tool = face(1, 1e-3, 1e-6),
-       .force = law,
-       .friction = dry,
-       .contacts = {.distance = 1e-3}});
+  ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<2, AreaSharing>>
+      regions({.object = egg,
+               .tool = face(1, 1e-3, 1e-6),
+               .force = law,
+               .friction = dry,
+               .contacts = {.distance = 1e-3}});
   for (int i = 0; i < 300; ++i) {
     const Pose<double> X = at(1e-5 * i, 0.0395 - 1e-5 * i, 2e-5 * i);
     const auto a = point.tick(X), b = regions.tick(X);
@@ -88,7 +88,7 @@ TEST_CASE("without friction no closed path gains or loses energy") {
   constexpr std::uint64_t seed = 7;
   std::mt19937_64 random(seed);
   INFO("seed ", seed);
-  ContactSolver<Box<double>, DuffingForce<double>, Frictionless<double>, Regions<4>> solver(
+  ContactSolver<Box<double>, DuffingForce<double>, Frictionless<double>, Regions<4, AreaSharing>> solver(
       {.object = block, .tool = face(7, 1e-3, 3e-5), .force = law, .contacts = {.distance = 1.5e-3}});
   for (int p = 0; p < 10; ++p) {
     const test::WanderingPath<Box<double>> path(block, V::Zero(), -2e-3, 2e-3, 0.0, random);
@@ -116,7 +116,7 @@ TEST_CASE("regions that split and merge keep the tangential force") {
   std::vector<V> points;
   for (int i = -10; i <= 10; ++i) points.emplace_back(5e-4 * i, std::abs(i) > 4 ? 0 : 2e-4, 0);
   ToolPoints<double> tool(points, std::vector<double>(points.size(), 2.5e-7), {.contact_area = 2e-6});
-  ContactSolver<Box<double>, DuffingForce<double>, PowerLawFriction<double>, Regions<4>> solver(
+  ContactSolver<Box<double>, DuffingForce<double>, PowerLawFriction<double>, Regions<4, AreaSharing>> solver(
       {.object = block,
        .tool = std::move(tool),
        .force = law,
@@ -154,7 +154,7 @@ TEST_CASE("float follows double") {
   const auto run = []<class S>(S) {
     std::vector<Vec3<S>> points;
     for (int i = 0; i < 49; ++i) points.emplace_back(S(1e-3) * S(i % 7 - 3), S(0), S(1e-3) * S(i / 7 - 3));
-    ContactSolver<Ellipsoid<S>, DuffingForce<S>, CoulombFriction<S>, Regions<4>> solver(
+    ContactSolver<Ellipsoid<S>, DuffingForce<S>, CoulombFriction<S>, Regions<4, AreaSharing>> solver(
         {.object = Ellipsoid<S>({.axes = Vec3<S>(S(0.06), S(0.04), S(0.04))}),
          .tool = ToolPoints<S>(points, std::vector<S>(49, S(1e-6)), {.contact_area = S(4e-5)}),
          .force = DuffingForce<S>({.c1 = S(40), .c3 = S(3e8)}),

@@ -22,9 +22,10 @@ using namespace palpate::test;
 
 namespace {
 
-using Clustered = ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4>>;
-using Single =
-    ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<>>;
+using Clustered =
+    ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4, AreaSharing>>;
+using Single = ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>,
+                             SingleRegion<AreaSharing>>;
 
 // Sliding, rocking, in and out of contact.
 Pose<double> on_path(int i) {
@@ -139,7 +140,8 @@ TEST_CASE(
 }
 
 TEST_CASE("a contact that sticks resists across as the law does at zero stretch") {
-  using OnBlock = ContactSolver<Box<double>, DuffingForce<double>, PowerLawFriction<double>, Regions<4>>;
+  using OnBlock =
+      ContactSolver<Box<double>, DuffingForce<double>, PowerLawFriction<double>, Regions<4, AreaSharing>>;
   const OnBlock solver({.object = block,
                         .tool = face(9, 1e-3, 4e-5),
                         .force = law,
@@ -188,9 +190,13 @@ TEST_CASE("types are deduced from the parts in the order of their roles") {
                              ContactSolver<Ellipsoid<double>, DuffingForce<double>>>);
   const auto stylus = make_solver(egg, PointTool<double>{}, law, dry);
   static_assert(std::same_as<std::remove_const_t<decltype(stylus)>, PointSolver<Ellipsoid<double>>>);
-  const auto region = make_solver(egg, face(3, 1e-3, 1e-5), law, dry);
-  static_assert(std::same_as<std::remove_const_t<decltype(region)>, Single>);
-  const auto regions = make_solver(egg, face(3, 1e-3, 1e-5), law, dry, Regions<4>{2e-3});
+  const ToolPoints<double> cube(TriangleMesh<double>(block.mesh(8)), {.contact_area = 1e-4});
+  const auto region = make_solver(egg, cube, law, dry);
+  static_assert(
+      std::same_as<
+          std::remove_const_t<decltype(region)>,
+          ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<>>>);
+  const auto regions = make_solver(egg, cube, law, dry, Regions<4>{2e-1});
   static_assert(std::same_as<std::remove_const_t<decltype(regions)>, RegionSolver<Ellipsoid<double>>>);
 }
 
@@ -205,7 +211,8 @@ TEST_CASE("the shape as a role: the solver draws what the model alone draws, and
   auto alone = make();
   PaperSolver<Ellipsoid<double>> solver(
       {.object = egg,
-       .tool = face(9, 1e-3, 4e-5),
+       .tool = ToolPoints<double>(TriangleMesh<double>(Box<double>({.half = V(4e-3, 1e-3, 4e-3)}).mesh(8)),
+                                  {.contact_area = 4e-5}, 1e-3),
        .force = law,
        .friction = PowerLawFriction<double>({.K = 0.5, .beta = 0.75, .mu_dynamic = 0.3}),
        .contacts = {.distance = 2e-3},

@@ -8,9 +8,9 @@
 ///     State, initial_state()                               from tick to tick: slot(k), changed(), reset()
 ///     Status collect(object, tool, force, X, state, sums)  finds what touches and adds it up, a sum per slot
 
+#include <palpate/contact/detail/entry_side.hpp>
 #include <palpate/contact/detail/region_tracker.hpp>
 #include <palpate/contact/region_slot.hpp>
-#include <palpate/contact/region_sum.hpp>
 #include <palpate/contact/topology.hpp>
 #include <palpate/core/absent.hpp>
 #include <palpate/core/pose.hpp>
@@ -18,6 +18,7 @@
 #include <palpate/detection/candidates.hpp>
 #include <palpate/geometry/concept.hpp>
 #include <palpate/law/map/concept.hpp>
+#include <palpate/solver/detail/leaf_share.hpp>
 
 #include <algorithm>
 #include <array>
@@ -38,6 +39,21 @@ template <ContactSurface Object, ForceModel Force>
   if (depth > force.max_depth()) status |= Status::beyond_stable;
   return status;
 }
+
+/// The state of a topology with one region.
+template <Real S>
+class OneRegion : public SingleSlot {
+ public:
+  /// After update() in contact.
+  template <class Sum>
+  Status keep_side(const Pose<S>& X, Sum& sum) noexcept {
+    if (this->slot(0).merged == 0) side_.begin();
+    return side_.update(X, sum);
+  }
+
+ private:
+  EntrySide<S> side_;
+};
 
 /// Two leaves as one, and each of them again.
 template <Real S>
@@ -113,57 +129,6 @@ inline void for_each_touching_leaf(const ToolPoints<S>& tool, const Pose<S>& X, 
                             });
   }
 }
-
-template <Real S>
-[[nodiscard]] inline Vec3<S> mean(const PointBatch<S>& x) noexcept {
-  Vec3<S> sum = Vec3<S>::Zero();
-  for (std::size_t i = 0; i < x.x.size(); ++i) sum += Vec3<S>(x.x[i], x.y[i], x.z[i]);
-  return sum / static_cast<S>(x.x.size());
-}
-
-/// What a leaf's points weigh: m_i/m up to the sharing's norm [-], and 1/A_i [1/m^2].
-template <Real S>
-struct alignas(64) LeafShare {
-  std::array<S, batch_size> weight, per_area;
-};
-template <class Sharing, Real S>
-[[nodiscard]] std::vector<LeafShare<S>> leaf_shares(const ToolPoints<S>& tool) {
-  std::vector<LeafShare<S>> shares((tool.size() + batch_size - 1) / batch_size);
-  for (std::size_t i = 0; i < batch_size * shares.size(); ++i) {
-    const S area = tool.area((std::min)(i, tool.size() - 1));
-    shares[i / batch_size].weight[i % batch_size] = Sharing::weight(area, tool.contact_area());
-    shares[i / batch_size].per_area[i % batch_size] = S(1) / area;
-  }
-  return shares;
-}
-
-/// Adds to `sum` the points of a leaf, each with its share of the law's force. A map's law is that at the
-/// leaf's middle, a point of the tool.
-template <Real S, ForceModel Force>
-inline void add_leaf(const LeafShare<S>& share, const Force& force, const PointBatch<S>& x,
-                     const PenetrationBatch<S>& in, LeafSum<S>& sum) noexcept {
-  std::array<S, batch_size> f;
-  using V = batch_group<S>;
-  if constexpr (HasForces<Force, V>) {
-    for (std::size_t i = 0; i < batch_size; i += V::size()) {
-      const V depth = (min)((max)(V(&in.depth[i]), S(0)), force.max_depth());
-      (V(&share.weight[i]) * force.forces(depth)).copy_to(&f[i]);
-    }
-  } else if constexpr (ForceMap<Force>) {
-    const Vec3<S> middle = mean(x);
-    const auto law = force.at(middle);
-    Vec3<S> configurational = Vec3<S>::Zero();
-    for (std::size_t i = 0; i < batch_size; ++i) {
-      f[i] = share.weight[i] * law.force(in.depth[i]);
-      configurational += share.weight[i] * law.configurational_force(in.depth[i]);
-    }
-    sum.add(middle, configurational);
-  } else {
-    for (std::size_t i = 0; i < batch_size; ++i)
-      f[i] = in.depth[i] > S(0) ? share.weight[i] * force.force(in.depth[i]) : S(0);
-  }
-  sum.add(x, in, f, share.per_area);
-}
 }  // namespace detail
 
 template <class Contacts, Real S>
@@ -178,7 +143,7 @@ class Collector<SinglePoint, S> {
   template <ForceModel Force>
   using Sum = std::conditional_t<ForceMap<Force>, RegionSum<S>, PointForce<S>>;
 
-  using State = SingleSlot;
+  using State = detail::OneRegion<S>;
   [[nodiscard]] State initial_state() const noexcept { return {}; }
 
   template <ContactSurface Object, ForceModel Force>
@@ -193,7 +158,7 @@ class Collector<SinglePoint, S> {
     const Vec3<S> arm = X.rotation * (tool.tip - tool.centre_of_mass);
     sums[0].add(x, arm, in.gradient, in.depth, law.force(in.depth), S(0));
     if constexpr (ForceMap<Force>) sums[0].add(arm, law.configurational_force(in.depth));
-    return Status::contact | detail::depth_status(object, force, in.depth);
+    return Status::contact | detail::depth_status(object, force, in.depth) | state.keep_side(X, sums[0]);
   }
 };
 
@@ -203,31 +168,30 @@ class Collector<SingleRegion<Sharing>, S> {
   template <ForceModel>
   using Sum = RegionSum<S>;
 
-  Collector(const SingleRegion<Sharing>&, const ToolPoints<S>& tool)
-      : share_(detail::leaf_shares<Sharing>(tool)) {}
+  Collector(const SingleRegion<Sharing>&, const ToolPoints<S>& tool) : leaves_(tool) {}
 
-  using State = SingleSlot;
+  using State = detail::OneRegion<S>;
   [[nodiscard]] State initial_state() const noexcept { return {}; }
 
   template <ContactSurface Object, ForceModel Force>
   Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
                  State& state, std::array<RegionSum<S>, 1>& sums) const noexcept {
-    LeafSum<S> leaves(X * tool.centre_of_mass());
+    auto leaves = leaves_.begin(tool, X);
     detail::for_each_touching_leaf(
         tool, X, object,
         [&](std::uint32_t begin, const PointBatch<S>& x, const PenetrationBatch<S>& in) noexcept {
-          detail::add_leaf(share_[begin / batch_size], force, x, in, leaves);
+          leaves_.add(tool, begin, force, x, in, leaves);
         });
     state.update(!leaves.empty());
     if (leaves.empty()) return Status::ok;
     RegionSum<S>& sum = sums[0];
     sum = leaves.total();
     sum.scale(Sharing::norm(static_cast<S>(sum.points)));
-    return Status::contact | detail::depth_status(object, force, sum.deepest);
+    return Status::contact | detail::depth_status(object, force, sum.deepest) | state.keep_side(X, sum);
   }
 
  private:
-  std::vector<detail::LeafShare<S>> share_;
+  detail::Leaves<Sharing, S> leaves_;
 };
 
 template <std::size_t N, MassSharing Sharing, Real S>
@@ -252,9 +216,7 @@ class Collector<Regions<N, Sharing>, S> {
   using Sum = RegionSum<S>;
 
   Collector(const Regions<N, Sharing>& regions, const ToolPoints<S>& tool)
-      : graph_(tool, static_cast<S>(regions.distance)),
-        share_(detail::leaf_shares<Sharing>(tool)),
-        points_(tool.size()) {}
+      : graph_(tool, static_cast<S>(regions.distance)), leaves_(tool), points_(tool.size()) {}
 
   /// The regions' identity, and the lists that a tick works in.
   class State {
@@ -283,12 +245,24 @@ class Collector<Regions<N, Sharing>, S> {
       }
     }
 
+    Status keep_side(std::size_t k, const Pose<S>& X, RegionSum<S>& sum) noexcept {
+      const RegionSlot& slot = tracker_.slots()[k];
+      if (slot.merged == 0) {
+        if (slot.parent == RegionSlot::none)
+          side_[k].begin();
+        else
+          side_[k] = side_[slot.parent];  // split off
+      }
+      return side_[k].update(X, sum);
+    }
+
     RegionTracker<S, N> tracker_;
+    std::array<detail::EntrySide<S>, N> side_;
     std::vector<Leaf> leaf_;            // of this tick, those with touching points
     std::vector<std::uint32_t> point_;  // touching tool points of this tick, in order
     std::uint64_t met_ = 0;             // slots that have points, as bits
   };
-  [[nodiscard]] State initial_state() const { return State(points_, share_.size()); }
+  [[nodiscard]] State initial_state() const { return State(points_, leaves_.size()); }
 
   template <ContactSurface Object, ForceModel Force>
   Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
@@ -313,34 +287,34 @@ class Collector<Regions<N, Sharing>, S> {
                                           Positions{&tool, &X, state.point_.data()});
     if (count == 0) return Status::ok;
     if (state.tracker_.changed()) state.find_slots(leaves, count);
-    const Vec3<S> centre_of_mass = X * tool.centre_of_mass();
     for (std::size_t slot = 0; slot < N; ++slot) {
       const std::uint64_t bit = std::uint64_t(1) << slot;
       if ((state.met_ & bit) == 0) continue;
-      LeafSum<S> sum(centre_of_mass);
+      auto sum = leaves_.begin(tool, X);
       for (std::size_t k = 0; k < leaves; ++k) {
         const Leaf& leaf = state.leaf_[k];
         if ((leaf.slots & bit) == 0) continue;
         // Placed anew: less work than to keep them, once other programs' data have taken the caches.
-        const PointBatch<S> x = detail::transformed(X, tool.batch(leaf.begin));
+        const PointBatch<S>& x = leaves_.placed(tool, leaf.begin, X);
         if (leaf.slots == bit) {
-          detail::add_leaf(share_[leaf.begin / leaf_size], force, x, leaf.in, sum);
+          leaves_.add(tool, leaf.begin, force, x, leaf.in, sum);
           continue;
         }
         PenetrationBatch<S> own = leaf.in;
         for (std::uint32_t i = 0; i < leaf_size; ++i)
           own.depth[i] = leaf.slot[i] == slot ? own.depth[i] : S(0);
-        detail::add_leaf(share_[leaf.begin / leaf_size], force, x, own, sum);
+        leaves_.add(tool, leaf.begin, force, x, own, sum);
       }
       sums[slot] = sum.total();
       sums[slot].scale(Sharing::norm(static_cast<S>(sums[slot].points)));
+      status |= state.keep_side(slot, X, sums[slot]);
     }
     return status | Status::contact | detail::depth_status(object, force, deepest);
   }
 
  private:
   ProximityGraph<S> graph_;
-  std::vector<detail::LeafShare<S>> share_;
+  detail::Leaves<Sharing, S> leaves_;
   std::size_t points_;
 };
 

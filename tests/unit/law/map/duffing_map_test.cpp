@@ -150,8 +150,8 @@ TEST_CASE("frictionless contact on an uneven object gains and loses no energy on
   SUBCASE("region") {
     const ToolPoints<double> ball(TriangleMesh<double>(Sphere<double>({.radius = 0.01}).mesh(300)),
                                   {.contact_area = 1e-4}, 1e-3);
-    ContactSolver<Ellipsoid<double>, DuffingMap<double>, Frictionless<double>, SingleRegion<>> solver(
-        {object, ball, uneven<double>(), {}, {}});
+    ContactSolver<Ellipsoid<double>, DuffingMap<double>, Frictionless<double>, SingleRegion<AreaSharing>>
+        solver({object, ball, uneven<double>(), {}, {}});
     CHECK(std::abs(gain(solver, true)) < 1e-5);  // points come in and leave between steps
   }
 }
@@ -161,12 +161,12 @@ TEST_CASE(
   const Ellipsoid<double> object({.axes = Vec3<double>(0.06, 0.04, 0.05)});
   const ToolPoints<double> ball(TriangleMesh<double>(Sphere<double>({.radius = 0.01}).mesh(300)),
                                 {.contact_area = 1e-4}, 1e-3);
-  ContactSolver<Ellipsoid<double>, DuffingMap<double>, PowerLawFriction<double>, Regions<4>> solver(
-      {object,
-       ball,
-       uneven<double>(),
-       PowerLawFriction<double>({.K = 0.5, .beta = 0.75, .mu_dynamic = 0.3}),
-       {2.5e-3}});
+  ContactSolver<Ellipsoid<double>, DuffingMap<double>, PowerLawFriction<double>, Regions<4, AreaSharing>>
+      solver({object,
+              ball,
+              uneven<double>(),
+              PowerLawFriction<double>({.K = 0.5, .beta = 0.75, .mu_dynamic = 0.3}),
+              {2.5e-3}});
   Vec3<double> before = Vec3<double>::Zero();
   double worst = 0, largest = 0;
   const test::HeapCount heap;

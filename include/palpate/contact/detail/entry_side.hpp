@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file  Thin parts: a region that was pushed past the middle is not pushed out on the other side.
+
+#include <palpate/core/pose.hpp>
+#include <palpate/core/status.hpp>
+
+#include <algorithm>
+
+namespace palpate::detail {
+
+/// What a region remembers of the side on which it came in.
+///
+/// Past the middle of a thin part the closest face is the far one, and the exit of every point turns round at
+/// once. It is seen at the deepest point: its exit turns by more than 135 degrees while it moves less than it
+/// is deep before and after together. Neither happens round an edge of more than 45 degrees at any depth, nor
+/// where a tool grips a part from both sides (its jaws are further apart than they are deep, until the part
+/// is half as thick). Then `Status::beyond_reach` is reported, and
+///
+/// - as long as the force has not dropped by half nor turned round, nothing else happens: a mallet whose
+///   corner is through is carried by the rest of its face;
+/// - then the wrench of the tick before stands, and fades out over a quarter of that depth of travel: it
+///   cannot give back more than the way in has stored. From there on the region has no force until the tool
+///   has left the object.
+///
+/// A tool whose first tick of contact is beyond the middle came from the other side, as far as can be known:
+/// SweptPose is for that.
+template <Real S>
+class EntrySide {
+ public:
+  /// Forgets: the region is new.
+  void begin() noexcept {
+    past_middle_ = lost_ = false;
+    depth_ = S(0);
+  }
+
+  /// Looks at this tick's sum, and changes it where the region is lost.
+  template <class Sum>
+  Status update(const Pose<S>& X, Sum& sum) noexcept {
+    if (lost_) return fade(X, sum);
+    const S along = exit_.dot(sum.exit);
+    if (depth_ > S(0) && along < S(0) && !past_middle_) [[unlikely]] {
+      const bool turned =
+          along * along > S(0.5) * exit_.squaredNorm() * sum.exit.squaredNorm();  // cos^2 of 135 degrees
+      past_middle_ = turned && (sum.position - position_).norm() < depth_ + sum.deepest;
+    }
+    if (past_middle_) [[unlikely]] {
+      if (!(along < S(0))) {
+        past_middle_ = false;  // it came back
+      } else {
+        const S carried = force_.dot(sum.force);
+        if (carried < S(0.5) * force_.squaredNorm()) {
+          lost_ = true;
+          share_ = S(1);
+          point_ = X.to_tool(position_);
+          return fade(X, sum);
+        }
+      }
+    }
+    if (!past_middle_) {
+      exit_ = sum.exit;
+      position_ = sum.position;
+      depth_ = sum.deepest;
+    }
+    force_ = sum.force;
+    torque_ = sum.torque;
+    return past_middle_ ? Status::beyond_reach : Status::ok;
+  }
+
+ private:
+  template <class Sum>
+  Status fade(const Pose<S>& X, Sum& sum) noexcept {
+    const Vec3<S> now = X * point_;
+    share_ = (std::max)(S(0), share_ - (now - position_).norm() / (depth_ / S(4)));
+    position_ = now;
+    sum.hold(share_ * force_, share_ * torque_, exit_);
+    return Status::beyond_reach;
+  }
+
+  Vec3<S> exit_, position_;  // of the deepest point, on the side of entry; position: object coordinates [m]
+  Vec3<S> force_, torque_;   // of the last tick [N], [N m]
+  Vec3<S> point_;            // tool point whose travel fades the wrench [m]
+  S depth_ = S(0);           // of the deepest point [m]
+  S share_ = S(0);
+  bool past_middle_ = false, lost_ = false;
+};
+
+}  // namespace palpate::detail
