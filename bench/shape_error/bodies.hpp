@@ -54,7 +54,7 @@ inline void draw_bodies(std::FILE* to) {
   const std::vector<palpate::test::ResponseBody> bodies = palpate::test::response_bodies();
   for (std::size_t b = 0; b < (std::min)(bodies.size(), std::size(presses)); ++b) {
     const auto& body = bodies[b];
-    const palpate::ResponseField field(body.mesh, [&](const V& p) { return p.y() <= body.held_below; },
+    const palpate::ResponseField field(body.mesh, [&](const V& p) { return p.y() <= body.fixed_below; },
                                        {.E = 1e5, .nu = body.nu, .mesh = {.vertices = 300}, .threads = 2});
     const V normal = presses[b].normal.normalized();
     const palpate::ResponseContact<double> contact{

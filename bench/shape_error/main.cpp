@@ -21,7 +21,7 @@ constexpr std::size_t depth_index = 2;
 std::vector<V> half_space(const Truth& t) {
   const MeshData<double> mesh{t.rest, t.triangles};
   HalfSpaceDeformation<double> model(
-      mesh, [&](const V& p) { return p.y() <= t.held(); },
+      mesh, [&](const V& p) { return p.y() <= t.fixed_height(); },
       HalfSpaceDeformation<double>::Params{.nu = t.nu, .smallest_radius = t.patch, .normals = false});
   std::vector<V> now(t.rest.size());
   const VertexBuffer<double> buffer{.positions = now.front().data(), .position_stride = sizeof(V)};
@@ -34,7 +34,7 @@ std::vector<V> half_space(const Truth& t) {
 
 std::vector<V> response(const Truth& t) {
   const ResponseField field(MeshData<double>{t.rest, t.triangles},
-                            [&](const V& p) { return p.y() <= t.held(); },
+                            [&](const V& p) { return p.y() <= t.fixed_height(); },
                             {.E = t.E, .nu = t.nu, .mesh = {.vertices = 600}, .threads = 2});
   ResponseTick<1> tick(field);
   const ResponseContact<double> contact{.position = t.top,

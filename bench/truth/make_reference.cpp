@@ -130,7 +130,7 @@ std::vector<Case> cases() {
       {"tilt_pressed_edge", block, 1, 0.49, {turned(on_top(28, 50, 0, 6), -0.04)}, {1, 2, 4, 6}},
       {"tilt_flank", a, 1, 0.49, {turned(on_flank(a.size, 40, 4, 25), 0.06)}, {1, 2, 4}},
       {"twist",
-       {Body::ellipsoid, a.size, a.held},
+       {Body::ellipsoid, a.size, a.fixed_height},
        1,
        0.49,
        {twisted(on_flank(a.size, 40, 6), 0.1)},
@@ -225,11 +225,12 @@ struct File {
 
 // 0 free, -1 fixed, k on patch k; by node.
 std::vector<int> regions(const Case& c, const Tetrahedra& mesh, const Surface& surface) {
-  const double held = (c.body.kind == Body::ellipsoid ? c.body.held : 0) + 1e-6 * c.body.size.maxCoeff();
+  const double fixed_height =
+      (c.body.kind == Body::ellipsoid ? c.body.fixed_height : 0) + 1e-6 * c.body.size.maxCoeff();
   std::vector<int> region(mesh.nodes.size(), 0);
   for (std::size_t n = 0; n < mesh.nodes.size(); ++n) {
     if (!surface.outer[n]) continue;
-    if (mesh.nodes[n].y() <= held) region[n] = -1;
+    if (mesh.nodes[n].y() <= fixed_height) region[n] = -1;
     for (std::size_t p = 0; p < c.patches.size() && !c.ball; ++p)
       if ((mesh.nodes[n] - c.patches[p].position).norm() <= c.patches[p].radius * (1 + 1e-4))
         region[n] = static_cast<int>(p) + 1;
@@ -268,12 +269,12 @@ void write_meta(const Case& c, const std::vector<double>& reached, const std::st
                                 ", \"first_touch_point_m\": ", list(first.position / 1e3),
                                 ", \"inward_normal\": ", list(-first.normal), "},\n");
   for (double depth : reached) depths += text(depths.empty() ? "" : ", ", depth / 1e3);
-  std::string held;
+  std::string fixed;
   if (c.body.kind == Body::ellipsoid)
-    held = text("\"fixed\": {\"y_max_m\": ", c.body.held / 1e3,
-                "},\n\"semi_axes_m\": ", list(c.body.size / 1e3), ",\n");
+    fixed = text("\"fixed\": {\"y_max_m\": ", c.body.fixed_height / 1e3,
+                 "},\n\"semi_axes_m\": ", list(c.body.size / 1e3), ",\n");
   std::fputs(
-      text("\"material\": {\"E_Pa\": ", c.E * 1e6, ", \"nu\": ", c.nu, "},\n", held,
+      text("\"material\": {\"E_Pa\": ", c.E * 1e6, ", \"nu\": ", c.nu, "},\n", fixed,
            c.ball ? ball : text("\"patches\": [\n", patches, "],\n"), "\"depths_m\": [", depths, "]\n}\n")
           .c_str(),
       meta.file);

@@ -16,11 +16,11 @@
 namespace bench {
 
 /// Box and cylinder stand on y = 0, about the axis y, and are fixed there; the ellipsoid is centred, fixed at
-/// y <= held.
+/// y <= fixed_height.
 struct Body {
   enum { box, cylinder, ellipsoid } kind;
-  V size;           ///< box: edges; cylinder: radius, height, radius; ellipsoid: semi-axes [mm]
-  double held = 0;  ///< height up to which the surface is fixed [mm]
+  V size;                   ///< box: edges; cylinder: radius, height, radius; ellipsoid: semi-axes [mm]
+  double fixed_height = 0;  ///< height up to which the surface is fixed [mm]
   bool half_x = false, half_z = false;  ///< x = 0, z = 0 is a plane of symmetry
 
   /// Its least extent [mm].
@@ -100,7 +100,7 @@ class GmshScript {
       add(text("Sphere(", tag, ") = {", list(p.position), ", ", p.radius, "};\n"));
     if (body_.kind == Body::ellipsoid)
       add(text("Box(", tag, ") = {", list(V::Constant(-far_)), ", ",
-               list(V(2 * far_, far_ + body_.held, 2 * far_)), "};\n"));
+               list(V(2 * far_, far_ + body_.fixed_height, 2 * far_)), "};\n"));
     if (!tools.empty())
       script_ += "BooleanFragments{Volume{body()}; Delete;}{Volume{" + tools + "}; Delete;}\n";
   }
@@ -133,9 +133,9 @@ class GmshScript {
         add_size(rim, text("sqrt(y^2 + (sqrt(x^2 + z^2) - ", s.x(), ")^2)"));
         break;
       case Body::ellipsoid: {
-        const double share = std::sqrt(1 - std::pow(body_.held / s.y(), 2));
-        add_size(rim / 2, text("sqrt((y - (", body_.held, "))^2 + ((sqrt((x / ", s.x(), ")^2 + (z / ", s.z(),
-                               ")^2) - ", share, ") * ", (std::min)(s.x(), s.z()), ")^2)"));
+        const double share = std::sqrt(1 - std::pow(body_.fixed_height / s.y(), 2));
+        add_size(rim / 2, text("sqrt((y - (", body_.fixed_height, "))^2 + ((sqrt((x / ", s.x(), ")^2 + (z / ",
+                               s.z(), ")^2) - ", share, ") * ", (std::min)(s.x(), s.z()), ")^2)"));
       }
     }
     ++fields_;

@@ -33,7 +33,7 @@ struct Truth {
   std::vector<std::vector<V>> displacement{};  // per depth [m]
 
   [[nodiscard]] bool in_patch(std::size_t v) const { return r_over_a[v] <= 1; }
-  [[nodiscard]] double held() const {
+  [[nodiscard]] double fixed_height() const {
     return is_cube() ? 1e-6 : -0.036 + 1e-6;
   }  // y up to which the body is fixed [m]
   [[nodiscard]] bool is_cube() const { return name == "cube"; }

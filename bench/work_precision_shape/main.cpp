@@ -152,7 +152,7 @@ void half_space(const Table& table, double bound) {
   std::optional<HalfSpaceDeformation<double>> model;
   const double setup = timed_ms([&] {
     model.emplace(
-        MeshData<double>{t.rest, t.triangles}, [&](const V& p) { return p.y() <= t.held(); },
+        MeshData<double>{t.rest, t.triangles}, [&](const V& p) { return p.y() <= t.fixed_height(); },
         HalfSpaceDeformation<double>::Params{.nu = t.nu, .smallest_radius = t.patch, .normals = false});
   });
   drawn<double>(table, "palpate HalfSpace", setup, *model, bound);
@@ -164,7 +164,7 @@ void response(const Table& table, double vertices, double bound) {
   std::optional<ResponseField> field;
   const double setup = timed_ms([&] {
     field.emplace(
-        mesh, [&](const V& p) { return p.y() <= t.held(); },
+        mesh, [&](const V& p) { return p.y() <= t.fixed_height(); },
         ResponseField::Params{.E = t.E, .nu = t.nu, .mesh = {.vertices = vertices}});
   });
   const ResponseDisplay display(*field, t.rest);

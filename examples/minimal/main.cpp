@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// [readme]
+// [minimal]
 #include <palpate/palpate.hpp>
 
 #include <cstdio>
@@ -16,4 +16,4 @@ int main() {
   const auto felt = touch.tick(pose);    // noexcept, no heap, well below a microsecond
   std::printf("F = %.3f %.3f %.3f N\n", felt.wrench.force.x(), felt.wrench.force.y(), felt.wrench.force.z());
 }
-// [readme]
+// [minimal]

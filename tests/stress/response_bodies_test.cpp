@@ -26,7 +26,7 @@ void try_body(const test::ResponseBody& body, double convergence) {
   for (const V& p : body.mesh.vertices) low = low.cwiseMin(p), high = high.cwiseMax(p);
   const double size = (high - low).norm();
   const auto make = [&](double vertices) {
-    return ResponseField(body.mesh, [&](const V& p) { return p.y() <= body.held_below; },
+    return ResponseField(body.mesh, [&](const V& p) { return p.y() <= body.fixed_below; },
                          {.E = 1e5, .nu = body.nu, .mesh = {.vertices = vertices}});
   };
   const ResponseField field = make(200), fine = make(400);
@@ -150,7 +150,7 @@ void try_body(const test::ResponseBody& body, double convergence) {
           most_linear = (std::max)(most_linear, V(u[3 * k], u[3 * k + 1], u[3 * k + 2]).norm() / way);
         finer.solve(both.data(), 1, &better);
         stiffest = (std::max)(stiffest, coarse.norm() / stiff);
-        if (one.place.y() > body.held_below + 2 * a)
+        if (one.place.y() > body.fixed_below + 2 * a)
           change.push_back((coarse - better).norm() / better.norm());
       }
     }

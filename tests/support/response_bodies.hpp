@@ -74,11 +74,11 @@ template <class Filled>
   return mesh;
 }
 
-/// A body, fixed where y [m] is at most `held_below`.
+/// A body, fixed where y [m] is at most `fixed_below`.
 struct ResponseBody {
   const char* name;
   MeshData<double> mesh;
-  double held_below;
+  double fixed_below;
   double nu;
 };
 [[nodiscard]] inline std::vector<ResponseBody> response_bodies() {

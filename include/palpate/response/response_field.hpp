@@ -41,7 +41,7 @@ struct ResponseParts {
   std::vector<std::uint32_t> spread_begin;  ///< see PatchTable
   std::vector<LoadMesh::Share> spread;
   std::vector<MidEdgeTable::Edges> edges;  ///< see MidEdgeTable
-  MidEdgeTable::Rows bends, raises;
+  MidEdgeTable::Rows edge_rows, vertex_rows;
 };
 
 namespace detail {
@@ -87,11 +87,11 @@ class ResponseField {
   [[nodiscard]] double unresolved_area() const;
   [[nodiscard]] const LoadMesh& load_mesh() const noexcept { return load_mesh_; }
   [[nodiscard]] const PatchTable& table() const noexcept { return table_; }
-  [[nodiscard]] const MidEdgeTable& bends() const noexcept { return bends_; }
+  [[nodiscard]] const MidEdgeTable& mid_edges() const noexcept { return mid_edges_; }
   [[nodiscard]] const RotationTable& rotation() const noexcept { return rotation_; }
   /// Bytes that a tick may read.
   [[nodiscard]] std::size_t memory() const noexcept {
-    return influence_.size() * sizeof(float) + table_.memory() + bends_.memory() + rotation_.memory();
+    return influence_.size() * sizeof(float) + table_.memory() + mid_edges_.memory() + rotation_.memory();
   }
   /// Vertices of the boundary element mesh, rounded up to whole registers, whatever this processor's.
   [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
@@ -145,7 +145,7 @@ class ResponseField {
   ElementMesh mesh_;
   LoadMesh load_mesh_;
   PatchTable table_;
-  MidEdgeTable bends_;
+  MidEdgeTable mid_edges_;
   RotationTable rotation_;
   std::vector<float> influence_, position_;
   std::size_t stride_ = 0;

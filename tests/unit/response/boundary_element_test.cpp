@@ -11,10 +11,10 @@ using Eigen::VectorXd;
 
 // Held below y = low; a small boundary element mesh.
 ElementMesh element_mesh(const MeshData<double>& mesh, double low, double vertices) {
-  std::vector<std::uint8_t> held;
+  std::vector<std::uint8_t> fixed;
   for (const auto& t : mesh.triangles)
-    held.push_back((mesh.vertices[t[0]].y() + mesh.vertices[t[1]].y() + mesh.vertices[t[2]].y()) / 3 <= low);
-  return make_element_mesh(SmoothSurface(mesh), held, {.vertices = vertices, .rim_ratio = 0.6});
+    fixed.push_back((mesh.vertices[t[0]].y() + mesh.vertices[t[1]].y() + mesh.vertices[t[2]].y()) / 3 <= low);
+  return make_element_mesh(SmoothSurface(mesh), fixed, {.vertices = vertices, .rim_ratio = 0.6});
 }
 template <class F>
 VectorXd at_vertices(const ElementMesh& m, const F& f) {
@@ -166,12 +166,12 @@ TEST_CASE(
     const int across = k + 2;
     const SmoothSurface bar(
         test::cells_mesh({across, 6 * across, across}, 1.0 / across, [](int, int, int) { return true; }));
-    std::vector<std::uint8_t> held;
+    std::vector<std::uint8_t> fixed;
     for (const auto& t : bar.mesh().triangles)
-      held.push_back(bar.mesh().vertices[t[0]].y() + bar.mesh().vertices[t[1]].y() +
-                         bar.mesh().vertices[t[2]].y() <
-                     1e-9);
-    twisted[k] = errors(detail::finish_element_mesh(bar, detail::Remesher(bar, held, {}))).twisted;
+      fixed.push_back(bar.mesh().vertices[t[0]].y() + bar.mesh().vertices[t[1]].y() +
+                          bar.mesh().vertices[t[2]].y() <
+                      1e-9);
+    twisted[k] = errors(detail::finish_element_mesh(bar, detail::Remesher(bar, fixed, {}))).twisted;
   }
   const double order[] = {std::log(twisted[0] / twisted[1]) / std::log(3.0 / 2),
                           std::log(twisted[1] / twisted[2]) / std::log(4.0 / 3)};

@@ -62,9 +62,9 @@ TEST_CASE("bounded compliance: to the bit what it was where nothing is too small
   Eigen::Matrix<double, 5, 1> lambda;
   lambda << 1, 2, 3, 4, 5;
   const Square<5> C = Q * lambda.asDiagonal() * Q.transpose();
-  Square<5> held = C;
-  detail::bound_below(held, 0.5);
-  CHECK(held == C);
+  Square<5> bounded = C;
+  detail::bound_below(bounded, 0.5);
+  CHECK(bounded == C);
 
   Mat3<double> diagonal = Vec3<double>(4, -3, 0).asDiagonal();
   detail::bound_below(diagonal, 1.0);

@@ -13,11 +13,11 @@ using V = Vec3<double>;
 using detail::LoadPositions;
 
 ElementMesh element_mesh(const MeshData<double>& body, double base, double vertices) {
-  std::vector<std::uint8_t> held;
+  std::vector<std::uint8_t> fixed;
   const auto& v = body.vertices;
   for (const auto& t : body.triangles)
-    held.push_back((std::max)({v[t[0]].y(), v[t[1]].y(), v[t[2]].y()}) < base);
-  return make_element_mesh(SmoothSurface(body), held, {.vertices = vertices});
+    fixed.push_back((std::max)({v[t[0]].y(), v[t[1]].y(), v[t[2]].y()}) < base);
+  return make_element_mesh(SmoothSurface(body), fixed, {.vertices = vertices});
 }
 MeshData<double> cube_mesh() { return test::box_mesh(V(0.1, 0.1, 0.1), 8); }
 

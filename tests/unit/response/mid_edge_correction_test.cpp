@@ -52,13 +52,13 @@ TEST_CASE("a quadratic field is drawn exactly on a face, near a contact; far fro
       const V &p = mesh.vertices[c[0]], &q = mesh.vertices[c[1]], &r = mesh.vertices[c[2]];
       const V middle = (p + q + r) / 3;
       const double away = (middle - place).norm();
-      detail::MidEdgeCorrection<1>::OfTriangle bend{};
-      const bool any = bent.find(t, bend);
+      detail::MidEdgeCorrection<1>::OfTriangle of_triangle{};
+      const bool any = bent.find(t, of_triangle);
       if (away > reach + 0.005 + 0.02) CHECK(!any);
       if (away > 0.6 * reach || std::min({p.y(), q.y(), r.y()}) < 0.1 - 1e-9) continue;
       REQUIRE(any);
       const detail::Simd4 third = detail::Simd4(1.f / 3);
-      const detail::SimdVec3<detail::Simd4> more = bend(third, third);
+      const detail::SimdVec3<detail::Simd4> more = of_triangle(third, third);
       const V drawn = (u(p) + u(q) + u(r)) / 3 + V(more.x[0], more.y[0], more.z[0]),
               linear = (u(p) + u(q) + u(r)) / 3;
       // The penalty on second derivatives (mid_edge_fit.hpp) makes them too small where neighbours lie to one
@@ -86,9 +86,9 @@ TEST_CASE(
     }
   const std::array<const float*, 3> vertices{place.data(), &place[n], &place[2 * n]};
   const detail::MidEdgeCorrection<1> bent(table, n);
-  std::vector<float> raised(field.size(), 0.f);
+  std::vector<float> corrected(field.size(), 0.f);
 
-  bent.raise(vertices, field.data(), list(contact_at(V(1, 1, 1))), 0.06f, 1e3f, raised.data());
+  bent.correct_vertices(vertices, field.data(), list(contact_at(V(1, 1, 1))), 0.06f, 1e3f, corrected.data());
   V sum = V::Zero(), linear_sum = V::Zero(), square = V::Zero(), linear_square = V::Zero();
   std::size_t checked = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -108,7 +108,7 @@ TEST_CASE(
             u[Eigen::Index(i)] += q.weight[Eigen::Index(k)] * double(at[4 * c[k] + i]);
         return u;
       };
-      const V e = error_of(raised), linear = error_of(field);
+      const V e = error_of(corrected), linear = error_of(field);
       sum += q.share * area * e, linear_sum += q.share * area * linear;
       square += q.share * area * e.cwiseAbs2(), linear_square += q.share * area * linear.cwiseAbs2();
     }
@@ -119,19 +119,20 @@ TEST_CASE(
     CHECK(std::sqrt(square[i] / linear_square[i]) < (i == 1 ? 0.3 : 0.45));  // equal triangles: 0.25, 0.41
   }
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    if (mesh.fixed_vertex[v]) CHECK(raised[4 * v + 1] == field[4 * v + 1]);
+    if (mesh.fixed_vertex[v]) CHECK(corrected[4 * v + 1] == field[4 * v + 1]);
 
-  bent.raise(vertices, field.data(), list(contact_at(V(0.05, 0.1, 0.05))), 1.f, 1e3f, raised.data());
+  bent.correct_vertices(vertices, field.data(), list(contact_at(V(0.05, 0.1, 0.05))), 1.f, 1e3f,
+                        corrected.data());
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
-    for (std::size_t i = 0; i < 3; ++i) CHECK(raised[4 * v + i] == field[4 * v + i]);
+    for (std::size_t i = 0; i < 3; ++i) CHECK(corrected[4 * v + i] == field[4 * v + i]);
 
   // Never by more than half of what is allowed, and by nothing where nothing is.
   std::vector<float> wild(field.size());
   for (std::size_t i = 0; i < wild.size(); ++i) wild[i] = i % 7 == 0 ? 100.f : -100.f;
   for (const float most : {0.02f, 0.f}) {
-    bent.raise(vertices, wild.data(), list(contact_at(V(1, 1, 1))), 0.06f, most, raised.data());
+    bent.correct_vertices(vertices, wild.data(), list(contact_at(V(1, 1, 1))), 0.06f, most, corrected.data());
     for (std::size_t i = 0; i < 4 * mesh.vertices.size(); ++i)
-      CHECK(std::abs(raised[i] - wild[i]) <= 0.5f * most + 1e-4f);  // rounding of 100 in float
+      CHECK(std::abs(corrected[i] - wild[i]) <= 0.5f * most + 1e-4f);  // rounding of 100 in float
   }
 }
 
@@ -194,9 +195,9 @@ TEST_CASE("near fields are drawn by their values at the middles of edges, a cont
   const auto drawn = [&bent, &mesh] {
     std::vector<float> out;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      detail::MidEdgeCorrection<2>::OfTriangle bend{};
-      if (bent.find(t, bend))
-        for (const detail::Simd4& edge : bend.edge) out.insert(out.end(), {edge[0], edge[1], edge[2]});
+      detail::MidEdgeCorrection<2>::OfTriangle of_triangle{};
+      if (bent.find(t, of_triangle))
+        for (const detail::Simd4& edge : of_triangle.edge) out.insert(out.end(), {edge[0], edge[1], edge[2]});
     }
     return out;
   };

@@ -135,11 +135,11 @@ TEST_CASE(
     "places of loads: on the body, and no triangle between them folds over, where parts of the surface have "
     "reflex corners") {
   const test::ResponseBody bowl = test::response_bodies()[6];
-  std::vector<std::uint8_t> held;
+  std::vector<std::uint8_t> fixed;
   const auto& v = bowl.mesh.vertices;
   for (const auto& t : bowl.mesh.triangles)
-    held.push_back((v[t[0]].y() + v[t[1]].y() + v[t[2]].y()) / 3 < bowl.held_below);
-  const ElementMesh solve = make_element_mesh(SmoothSurface(bowl.mesh), held, {.vertices = 200});
+    fixed.push_back((v[t[0]].y() + v[t[1]].y() + v[t[2]].y()) / 3 < bowl.fixed_below);
+  const ElementMesh solve = make_element_mesh(SmoothSurface(bowl.mesh), fixed, {.vertices = 200});
   const TriangleBvh<double> body(bowl.mesh);
   const LoadMesh touch = detail::LoadPositions(solve).load_mesh();
   for (const auto& node : touch.nodes()) CHECK(std::sqrt(body.closest(node.source).distance2) < 1e-9);

@@ -78,7 +78,7 @@ void polar_points(const Element& e, const Vec3d& apex, std::vector<ElementPoint>
 class BoundaryElements {
  public:
   BoundaryElements(ElementMesh mesh, double nu, unsigned threads)
-      : mesh_(std::move(mesh)), bend_(mesh_), kelvin_(nu), threads_(threads) {
+      : mesh_(std::move(mesh)), mid_edge_fit_(mesh_), kelvin_(nu), threads_(threads) {
     if (!(nu >= 0 && nu <= 0.5)) fail("BoundaryElements", "nu must be in [0, 1/2]", nu);
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       detail::Element e;
@@ -98,7 +98,7 @@ class BoundaryElements {
   }
 
   [[nodiscard]] const ElementMesh& mesh() const noexcept { return mesh_; }
-  [[nodiscard]] const detail::MidEdgeFit& bend() const noexcept { return bend_; }
+  [[nodiscard]] const detail::MidEdgeFit& mid_edge_fit() const noexcept { return mid_edge_fit_; }
   [[nodiscard]] const Kelvin& kelvin() const noexcept { return kelvin_; }
   [[nodiscard]] const std::vector<detail::Element>& elements() const noexcept { return elements_; }
   [[nodiscard]] unsigned threads() const noexcept { return threads_; }
@@ -150,7 +150,7 @@ class BoundaryElements {
       const Vec3<double>& x = mesh_.vertices[i];
       Row h = Row::Zero(3, H_.cols()), g = Row::Zero(3, G_.cols()), gf = Row::Zero(3, G_fixed_.cols());
       Mat3<double> T[3], B[3], U[3], D[3], sum = Mat3<double>::Zero();
-      std::vector<Mat3<double>> bent(bend_.size(), Mat3<double>::Zero()), bent_traction = bent;
+      std::vector<Mat3<double>> bent(mid_edge_fit_.size(), Mat3<double>::Zero()), bent_traction = bent;
       std::vector<detail::ElementPoint> scratch;
       for (std::size_t t = 0; t < elements_.size(); ++t) {
         for (int c = 0; c < 3; ++c) T[c].setZero(), B[c].setZero(), U[c].setZero(), D[c].setZero();
@@ -159,8 +159,8 @@ class BoundaryElements {
           if (mesh_.triangles[t][static_cast<std::size_t>(c)] == i) self = c;
         integrate(x, t, self, T, B, U, D, scratch);
         for (std::size_t c = 0; c < 3; ++c) {
-          bent[bend_.edge(t, c)] += B[c];
-          bent_traction[bend_.edge(t, c)] += D[c];
+          bent[mid_edge_fit_.edge(t, c)] += B[c];
+          bent_traction[mid_edge_fit_.edge(t, c)] += D[c];
           const std::uint32_t v = mesh_.triangles[t][c];
           if (int(c) != self) {
             h.middleCols<3>(3 * Eigen::Index(v)) += T[c];
@@ -171,8 +171,8 @@ class BoundaryElements {
         }
       }
       h.middleCols<3>(3 * Eigen::Index(i)) = -sum;
-      for (std::size_t e = 0; e < bend_.size(); ++e)
-        for (const detail::VertexWeight& w : bend_[e]) {
+      for (std::size_t e = 0; e < mid_edge_fit_.size(); ++e)
+        for (const detail::VertexWeight& w : mid_edge_fit_[e]) {
           h.middleCols<3>(3 * Eigen::Index(w.vertex)) += w.weight * bent[e];
           if (within_fixed[e]) gf.middleCols<3>(3 * fixed_number[w.vertex]) += w.weight * bent_traction[e];
         }
@@ -184,12 +184,12 @@ class BoundaryElements {
 
   // For each edge: whether it and all vertices of its mid-edge correction lie in the fixed region.
   [[nodiscard]] std::vector<char> edges_within_fixed() const {
-    std::vector<char> out(bend_.size(), 1);
+    std::vector<char> out(mid_edge_fit_.size(), 1);
     for (std::size_t t = 0; t < elements_.size(); ++t)
       for (std::size_t c = 0; c < 3; ++c)
-        if (!mesh_.fixed_triangle[t]) out[bend_.edge(t, c)] = 0;
+        if (!mesh_.fixed_triangle[t]) out[mid_edge_fit_.edge(t, c)] = 0;
     for (std::size_t e = 0; e < out.size(); ++e)
-      for (const detail::VertexWeight& w : bend_[e])
+      for (const detail::VertexWeight& w : mid_edge_fit_[e])
         if (!mesh_.fixed_vertex[w.vertex]) out[e] = 0;
     return out;
   }
@@ -253,7 +253,7 @@ class BoundaryElements {
   }
 
   ElementMesh mesh_;
-  detail::MidEdgeFit bend_;
+  detail::MidEdgeFit mid_edge_fit_;
   Kelvin kelvin_;
   unsigned threads_;
   std::vector<detail::Element> elements_;

@@ -103,10 +103,10 @@ class NearSource {
         for (const auto& [v, f] : lumps) sum += bem_.kelvin().displacement(m.vertices[v] - x, f);
       } else {
         // At the node itself the mean over a patch is wanted: 1/R^2 is cut off there.
-        const double hold = distance < setup::own_vertex * s.size ? setup::own_cut_off * s.size : 0;
+        const double cut_off = distance < setup::own_vertex * s.size ? setup::own_cut_off * s.size : 0;
         for (const Point& q : points) {
           const Vec3d r = q.x - x;
-          if (r.squaredNorm() < hold * hold) continue;
+          if (r.squaredNorm() < cut_off * cut_off) continue;
           sum += bem_.kelvin().displacement(r, q.f);
         }
       }
@@ -139,11 +139,11 @@ class NearSource {
         const std::size_t d = (c + 1) % 3, opposite = (c + 2) % 3;
         const Vec3d normal = e.normal(0.5 * (Vec3d::Unit(Eigen::Index(c)) + Vec3d::Unit(Eigen::Index(d))));
         const double area = 0.5 * normal.norm();
-        const Mat3<double> bend = traction(s, e.middle[c], normal.normalized()) -
-                                  0.5 * (out.middleRows<3>(at(c)) + out.middleRows<3>(at(d)));
-        missing.middleRows<3>(at(c)) += 2 * area / 15 * bend;
-        missing.middleRows<3>(at(d)) += 2 * area / 15 * bend;
-        missing.middleRows<3>(at(opposite)) += area / 15 * bend;
+        const Mat3<double> quadratic = traction(s, e.middle[c], normal.normalized()) -
+                                       0.5 * (out.middleRows<3>(at(c)) + out.middleRows<3>(at(d)));
+        missing.middleRows<3>(at(c)) += 2 * area / 15 * quadratic;
+        missing.middleRows<3>(at(d)) += 2 * area / 15 * quadratic;
+        missing.middleRows<3>(at(opposite)) += area / 15 * quadratic;
         mass[node[c]] += area / 3;
       }
     }
@@ -182,7 +182,8 @@ namespace detail {
   const Eigen::Index n3 = 3 * Eigen::Index(m.vertices.size()), count = Eigen::Index(nodes.size());
   Matrix w(n3, 3 * count);
   const detail::NearSource source(bem, nu);
-  const auto hold = [&](Eigen::Ref<Matrix> out, Eigen::Index row, std::uint32_t v, const LoadNode& node) {
+  const auto prescribe = [&](Eigen::Ref<Matrix> out, Eigen::Index row, std::uint32_t v,
+                             const LoadNode& node) {
     for (int l = 0; l < 3; ++l) out.block<3, 1>(row, l) = detail::near_at_vertex(m, node, v, l, nu);
   };
   constexpr Eigen::Index block = detail::setup::loads_together;
@@ -190,17 +191,17 @@ namespace detail {
   detail::parallel_for(static_cast<std::size_t>(blocks), bem.threads(), [&](std::size_t b) {
     const Eigen::Index first = Eigen::Index(b) * block, size = (std::min)(block, count - first);
     Matrix traction(3 * Eigen::Index(m.nodes.size()), 3 * size),
-        held(3 * Eigen::Index(bem.fixed().size()), 3 * size);
+        prescribed(3 * Eigen::Index(bem.fixed().size()), 3 * size);
     std::vector<std::vector<detail::NearSource::Close>> close;
     for (Eigen::Index j = 0; j < size; ++j) {
       const LoadNode& s = nodes[std::size_t(first + j)];
       close.push_back(source.close(s));
       source.nodal(s, close.back(), traction.middleCols<3>(3 * j));
       for (std::size_t f = 0; f < bem.fixed().size(); ++f)
-        hold(held.middleCols<3>(3 * j), 3 * Eigen::Index(f), bem.fixed()[f], s);
+        prescribe(prescribed.middleCols<3>(3 * j), 3 * Eigen::Index(f), bem.fixed()[f], s);
     }
     auto columns = w.middleCols(3 * first, 3 * size);
-    columns.noalias() = bem.H_fixed() * held;
+    columns.noalias() = bem.H_fixed() * prescribed;
     columns.noalias() -= bem.G() * traction;
     for (Eigen::Index j = 0; j < size; ++j)
       source.remainder(nodes[std::size_t(first + j)], close[std::size_t(j)], traction.middleCols<3>(3 * j),
@@ -210,7 +211,7 @@ namespace detail {
   // The fixed vertices' rows now contain tractions; the displacement there is w = -u_near.
   for (auto v : bem.fixed())
     for (Eigen::Index j = 0; j < count; ++j) {
-      hold(w.middleCols<3>(3 * j), 3 * Eigen::Index(v), v, nodes[std::size_t(j)]);
+      prescribe(w.middleCols<3>(3 * j), 3 * Eigen::Index(v), v, nodes[std::size_t(j)]);
       w.block<3, 3>(3 * Eigen::Index(v), 3 * j) *= -1;
     }
   return w;

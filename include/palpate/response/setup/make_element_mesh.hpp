@@ -91,18 +91,18 @@ inline void require_each_piece_fixed(const MeshData<double>& mesh,
     parent[root(t[2])] = root(t[0]);
   }
   std::vector<double> volume(mesh.vertices.size(), 0);
-  std::vector<std::uint8_t> held(mesh.vertices.size(), 0);
+  std::vector<std::uint8_t> is_fixed(mesh.vertices.size(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& c = mesh.triangles[t];
     const std::uint32_t r = root(c[0]);
     const Vec3d& origin = mesh.vertices[r];
     volume[r] += (mesh.vertices[c[0]] - origin)
                      .dot((mesh.vertices[c[1]] - origin).cross(mesh.vertices[c[2]] - origin));
-    if (fixed_triangle[t]) held[r] = 1;
+    if (fixed_triangle[t]) is_fixed[r] = 1;
   }
   for (std::size_t v = 0; v < volume.size(); ++v)
-    if (volume[v] > 0 && !held[v])
-      fail_at("make_element_mesh", "each piece of the mesh must be held somewhere: nothing holds the one",
+    if (volume[v] > 0 && !is_fixed[v])
+      fail_at("make_element_mesh", "each piece of the mesh must be fixed somewhere: nothing fixes the one",
               "with vertex", v);
 }
 
@@ -243,10 +243,10 @@ inline void require_each_piece_fixed(const MeshData<double>& mesh,
     fail(where, "rim_ratio must be in [0.1, 1]", params.rim_ratio);
   if (!(params.growth >= 0.1 && is_finite(params.growth)))
     fail(where, "growth must be >= 0.1", params.growth);
-  std::size_t held = 0;
-  for (auto f : fixed_triangle) held += f;
-  if (held == 0) fail(where, "the fixed region must hold at least one whole triangle");
-  if (held == fixed_triangle.size()) fail(where, "the fixed region must leave some triangles free");
+  std::size_t count = 0;
+  for (auto f : fixed_triangle) count += f;
+  if (count == 0) fail(where, "the fixed region must hold at least one whole triangle");
+  if (count == fixed_triangle.size()) fail(where, "the fixed region must leave some triangles free");
   detail::require_each_piece_fixed(surface.mesh(), fixed_triangle);
   detail::Remesher remesher(surface, fixed_triangle, params);
   remesher.run();

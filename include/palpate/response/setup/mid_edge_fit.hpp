@@ -65,7 +65,7 @@ class MidEdgeFit {
           weights_[i].back().weight += w.weight;
       }
     }
-    find_raise(m, fits);
+    fit_vertices(m, fits);
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return weights_.size(); }
@@ -73,7 +73,9 @@ class MidEdgeFit {
     return weights_[edge];
   }
   /// r at vertex v; empty where it is fixed.
-  [[nodiscard]] const std::vector<VertexWeight>& raise(std::size_t v) const noexcept { return raise_[v]; }
+  [[nodiscard]] const std::vector<VertexWeight>& at_vertex(std::size_t v) const noexcept {
+    return at_vertex_[v];
+  }
   /// Number of the edge from corner c to c + 1 of triangle t.
   [[nodiscard]] std::uint32_t edge(std::size_t t, std::size_t c) const noexcept { return of_[t][c]; }
 
@@ -129,7 +131,7 @@ class MidEdgeFit {
     return fits;
   }
 
-  void find_raise(const ElementMesh& m, const std::vector<Fit>& fits) {
+  void fit_vertices(const ElementMesh& m, const std::vector<Fit>& fits) {
     // r times the vertex's mass = sum by . K over its nodes.
     std::vector<Vec3d> by(m.nodes.size(), Vec3d::Zero());
     std::vector<double> mass(m.vertices.size(), 0);
@@ -150,21 +152,21 @@ class MidEdgeFit {
         mass[corner[c]] += area / 3;
       }
     }
-    raise_.resize(m.vertices.size());
+    at_vertex_.resize(m.vertices.size());
     for (std::size_t k = 0; k < m.nodes.size(); ++k) {
       const std::uint32_t v = m.nodes[k].vertex;
       if (m.fixed_vertex[v]) continue;
       double sum = 0;
       for (const auto& [vertex, K] : fits[k]) {
-        raise_[v].push_back({vertex, by[k].dot(K) / mass[v]});
-        sum += raise_[v].back().weight;
+        at_vertex_[v].push_back({vertex, by[k].dot(K) / mass[v]});
+        sum += at_vertex_[v].back().weight;
       }
-      raise_[v].push_back({v, -sum});
+      at_vertex_[v].push_back({v, -sum});
     }
   }
 
   std::vector<std::array<std::uint32_t, 3>> of_;
-  std::vector<std::vector<VertexWeight>> weights_, raise_;
+  std::vector<std::vector<VertexWeight>> weights_, at_vertex_;
 };
 
 }  // namespace palpate::detail

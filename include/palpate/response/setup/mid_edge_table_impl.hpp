@@ -23,7 +23,7 @@ PALPATE_SETUP_INLINE MidEdgeTable::MidEdgeTable(const ElementMesh& mesh, const d
     }
   for (std::size_t e = 0; e < fit.size(); ++e)
     add(edge_rows_, rests[e] ? std::vector<detail::VertexWeight>{} : fit[e]);
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) add(vertex_rows_, fit.raise(v));
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) add(vertex_rows_, fit.at_vertex(v));
   find_middles(mesh);
 }
 

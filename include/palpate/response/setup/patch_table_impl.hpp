@@ -35,7 +35,7 @@ inline void add_weight(std::vector<NodeWeight>& list, std::uint32_t node, double
 
 // Weights of the boundary element mesh's vertices in the displacement at each node's position.
 [[nodiscard]] inline std::vector<std::vector<NodeWeight>> vertices_at_nodes(const ElementMesh& mesh,
-                                                                            const MidEdgeTable& bends,
+                                                                            const MidEdgeTable& mid_edges,
                                                                             const LoadMesh& load_mesh) {
   std::vector<std::vector<NodeWeight>> out(load_mesh.nodes().size());
   for (std::size_t k = 0; k < out.size(); ++k) {
@@ -46,7 +46,7 @@ inline void add_weight(std::vector<NodeWeight>& list, std::uint32_t node, double
       add_weight(out[k], mesh.triangles[node.triangle][c], l[Eigen::Index(c)]);
       const double bent = 4 * l[Eigen::Index(c)] * l[Eigen::Index(d)];
       if (bent == 0) continue;
-      for (const MidEdgeTable::Weight& w : bends.edge_rows()[bends.of_triangle()[node.triangle][c]])
+      for (const MidEdgeTable::Weight& w : mid_edges.edge_rows()[mid_edges.of_triangle()[node.triangle][c]])
         add_weight(out[k], w.vertex, bent * double(w.weight));
     }
   }
@@ -73,7 +73,7 @@ inline void add_weight(std::vector<NodeWeight>& list, std::uint32_t node, double
 
 }  // namespace detail
 
-PALPATE_SETUP_INLINE PatchTable::PatchTable(const ElementMesh& mesh, const MidEdgeTable& bends,
+PALPATE_SETUP_INLINE PatchTable::PatchTable(const ElementMesh& mesh, const MidEdgeTable& mid_edges,
                                             const LoadMesh& load_mesh, unsigned threads,
                                             const InfluenceFunctions& influence)
     : unit_(unit(load_mesh)) {
@@ -85,7 +85,8 @@ PALPATE_SETUP_INLINE PatchTable::PatchTable(const ElementMesh& mesh, const MidEd
   levels_ = 2;
   while (radius2(levels_ - 1) < 0.25 * (high - low).squaredNorm()) ++levels_;
   const std::size_t n = load_mesh.nodes().size(), stride = influence.stride;
-  const std::vector<std::vector<detail::NodeWeight>> at = detail::vertices_at_nodes(mesh, bends, load_mesh);
+  const std::vector<std::vector<detail::NodeWeight>> at =
+      detail::vertices_at_nodes(mesh, mid_edges, load_mesh);
   std::vector<std::vector<detail::NodeWeight>> loaded(n * levels_), seen(n * levels_);  // nodes; vertices
   detail::parallel_for(n * levels_, threads, [&](std::size_t i) {
     loaded[i] = detail::patch_around(load_mesh, i / levels_, std::sqrt(radius2(i % levels_)));

@@ -23,16 +23,16 @@ PALPATE_SETUP_INLINE void ResponseField::build(const MeshData<double>& mesh, con
 PALPATE_SETUP_INLINE void ResponseField::build(const MeshData<double>& mesh,
                                                const std::vector<std::uint32_t>& fixed_vertices,
                                                const Params& params) {
-  std::vector<std::uint8_t> held(mesh.vertices.size(), 0);
+  std::vector<std::uint8_t> is_fixed(mesh.vertices.size(), 0);
   for (auto v : fixed_vertices) {
-    if (v >= held.size()) fail("ResponseField", "fixed vertices must be vertices of the mesh", v);
-    held[v] = 1;
+    if (v >= is_fixed.size()) fail("ResponseField", "fixed vertices must be vertices of the mesh", v);
+    is_fixed[v] = 1;
   }
   std::vector<std::uint8_t> inside(mesh.triangles.size());
   for (std::size_t t = 0; t < inside.size(); ++t) {
     const auto& c = mesh.triangles[t];
-    inside[t] = c[0] < held.size() && c[1] < held.size() && c[2] < held.size() && held[c[0]] && held[c[1]] &&
-                held[c[2]];
+    inside[t] = c[0] < is_fixed.size() && c[1] < is_fixed.size() && c[2] < is_fixed.size() &&
+                is_fixed[c[0]] && is_fixed[c[1]] && is_fixed[c[2]];
   }
   build_from(mesh, inside, params);
 }
@@ -45,7 +45,8 @@ PALPATE_SETUP_INLINE ResponseField::ResponseField(ResponseParts parts)
                         std::move(parts.shares));
   table_ = PatchTable(load_mesh_, std::move(parts.own), std::move(parts.second), std::move(parts.moments),
                       levels, std::move(parts.spread_begin), std::move(parts.spread));
-  bends_ = MidEdgeTable(mesh_, std::move(parts.edges), std::move(parts.bends), std::move(parts.raises));
+  mid_edges_ =
+      MidEdgeTable(mesh_, std::move(parts.edges), std::move(parts.edge_rows), std::move(parts.vertex_rows));
   read_mesh();
 }
 
@@ -63,9 +64,9 @@ PALPATE_SETUP_INLINE ResponseParts ResponseField::parts() const {
           table_.moment_rows(),
           table_.spread_begin(),
           table_.all_spread(),
-          bends_.of_triangle(),
-          bends_.edge_rows(),
-          bends_.vertex_rows()};
+          mid_edges_.of_triangle(),
+          mid_edges_.edge_rows(),
+          mid_edges_.vertex_rows()};
 }
 
 PALPATE_SETUP_INLINE double ResponseField::unresolved_area() const { return palpate::unresolved_area(mesh_); }
@@ -99,7 +100,7 @@ PALPATE_SETUP_INLINE void ResponseField::build_from(const MeshData<double>& mesh
              "the boundary equation has no finite solution: is the mesh closed, without triangles that "
              "fold over?");
   mesh_ = bem.mesh();
-  bends_ = MidEdgeTable(mesh_, bem.bend());
+  mid_edges_ = MidEdgeTable(mesh_, bem.mid_edge_fit());
   stride_ = padded(mesh_.vertices.size());
   influence_.resize(loads * 3 * stride_ * load_mesh_.nodes().size(), 0.f);
   for (std::uint32_t k = 0; k < positions.solved_or_fixed(); ++k)
@@ -116,7 +117,7 @@ PALPATE_SETUP_INLINE void ResponseField::build_from(const MeshData<double>& mesh
   detail::parallel_for(positions.solved_or_fixed(), params.threads,
                        [&](std::size_t k) { derive(positions, k); });
   for (std::size_t k = positions.solved_or_fixed(); k < load_mesh_.nodes().size(); ++k) join(positions, k);
-  table_ = PatchTable(mesh_, bends_, load_mesh_, params.threads, functions());
+  table_ = PatchTable(mesh_, mid_edges_, load_mesh_, params.threads, functions());
   influence_.resize(loads * 3 * stride_ * load_mesh_.solved());
   influence_.shrink_to_fit();
   read_mesh();

@@ -127,7 +127,7 @@ PALPATE_SETUP_INLINE std::vector<std::byte> save_response_field(const ResponseFi
   body.put_list(parts.spread_begin);
   body.put_list(parts.spread);
   body.put_list(parts.edges);
-  for (const MidEdgeTable::Rows* rows : {&parts.bends, &parts.raises}) {
+  for (const MidEdgeTable::Rows* rows : {&parts.edge_rows, &parts.vertex_rows}) {
     body.put_list(rows->begin);
     body.put_list(rows->weights);
   }
@@ -182,7 +182,7 @@ PALPATE_SETUP_INLINE ResponseField load_response_field(std::span<const std::byte
   parts.spread_begin = in.get_list<std::uint32_t>();
   parts.spread = in.get_list<LoadMesh::Share>();
   parts.edges = in.get_list<MidEdgeTable::Edges>();
-  for (MidEdgeTable::Rows* rows : {&parts.bends, &parts.raises}) {
+  for (MidEdgeTable::Rows* rows : {&parts.edge_rows, &parts.vertex_rows}) {
     rows->begin = in.get_list<std::uint32_t>();
     rows->weights = in.get_list<MidEdgeTable::Weight>();
   }
@@ -220,17 +220,17 @@ PALPATE_SETUP_INLINE ResponseField load_response_field(std::span<const std::byte
               levels < 64 && parts.own.size() == levels * parts.triangles.size(),
           "the tables' lengths are not the nodes'");
   require_shares(parts.spread_begin, parts.spread, levels * k, k, solved);
-  bool bends = parts.edges.size() == parts.mesh.triangles.size();
-  for (const MidEdgeTable::Rows* rows : {&parts.bends, &parts.raises}) {
+  bool fits = parts.edges.size() == parts.mesh.triangles.size();
+  for (const MidEdgeTable::Rows* rows : {&parts.edge_rows, &parts.vertex_rows}) {
     const auto& begin = rows->begin;
-    bends = bends && !begin.empty() && begin.front() == 0 && begin.back() == rows->weights.size() &&
-            std::is_sorted(begin.begin(), begin.end());
-    for (const auto& w : rows->weights) bends = bends && w.vertex < n && is_finite(w.weight);
+    fits = fits && !begin.empty() && begin.front() == 0 && begin.back() == rows->weights.size() &&
+           std::is_sorted(begin.begin(), begin.end());
+    for (const auto& w : rows->weights) fits = fits && w.vertex < n && is_finite(w.weight);
   }
-  bends = bends && parts.raises.size() == n;
+  fits = fits && parts.vertex_rows.size() == n;
   for (const auto& t : parts.edges)
-    for (auto e : t) bends = bends && e < parts.bends.size();
-  require(bends, "the edges' bends are not the mesh's");
+    for (auto e : t) fits = fits && e < parts.edge_rows.size();
+  require(fits, "the mid-edge corrections are not those of the mesh");
   for (const auto& t : parts.mesh.triangles)
     for (auto v : t) require(v < n, "a triangle's corner is not a vertex");
   for (const auto& t : parts.triangles)

@@ -32,7 +32,7 @@ class ResponseDrawing {
         total_(4 * field.stride(), 0.f),
         raised_(total_),
         close_(padded<Simd4>(field.mesh().triangles.size())),
-        corrections_(field.bends(), field.stride()) {}
+        corrections_(field.mid_edges(), field.stride()) {}
 
   /// `total`: the field at the boundary element mesh's vertices, by coordinate.
   void read(const float* total, const DrawnContacts& contacts) noexcept {
@@ -43,9 +43,10 @@ class ResponseDrawing {
     for (const DrawnContact& c : contacts.contact) d2 = (std::max)(d2, c.tool.displacement2());
     const auto reach = static_cast<float>(tick::mid_edge_reach * field_->mesh().length);
     corrections_.read(total, contacts.own, n, contacts.contact, reach);
-    corrections_.raise({field_->coordinate(0), field_->coordinate(1), field_->coordinate(2)}, total_.data(),
-                       contacts.contact, reach,
-                       static_cast<float>(tick::max_vertex_correction * std::sqrt(d2)), raised_.data());
+    corrections_.correct_vertices({field_->coordinate(0), field_->coordinate(1), field_->coordinate(2)},
+                                  total_.data(), contacts.contact, reach,
+                                  static_cast<float>(tick::max_vertex_correction * std::sqrt(d2)),
+                                  raised_.data());
   }
 
   /// Calls emit(slot, u) with a SIMD vector of displacements from that slot on, until all of a display have

@@ -110,19 +110,19 @@ class LoadMesh {
                      &r = nodes_[triangles_[t][2]];
       const Vec3<double> dq = q.normal - p.normal, dr = r.normal - p.normal;
       Vec3<double> eq, er, to, area;
-      const auto raise = [&] {
+      const auto offset = [&] {
         eq = q.source - p.source + d * dq;
         er = r.source - p.source + d * dr;
         to = x - p.source - d * p.normal;
         area = eq.cross(er);
       };
-      raise();
+      offset();
       for (int newton = 0; newton < 4; ++newton) {  // d for which the offset triangle's plane contains x
         const double slope = (dq.cross(er) + eq.cross(dr)).dot(to) - area.dot(p.normal),
                      height = area.dot(to);
         if (!(slope < 0)) return;
         d -= height / slope;
-        raise();
+        offset();
         // Newton's method leaves an error of the square of its last step.
         if (height * height < 1e-10 * slope * slope * eq.squaredNorm()) break;
       }

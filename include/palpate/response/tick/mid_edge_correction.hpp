@@ -57,8 +57,9 @@ class MidEdgeCorrection {
   /// Adds to `field`, at the vertices, four numbers each, the mean r of the corrections, as far as those of
   /// the edges are left out. `vertices`: coordinates. What is added is r max^2 / (max^2 + r^2), at most `max`
   /// / 2: the mesh does not resolve more.
-  void raise(const std::array<const float*, 3>& vertices, const float* field,
-             std::span<const DrawnContact> contacts, float reach, float max, float* raised) const noexcept {
+  void correct_vertices(const std::array<const float*, 3>& vertices, const float* field,
+                        std::span<const DrawnContact> contacts, float reach, float max,
+                        float* out) const noexcept {
     const MidEdgeTable::Rows& rows = table_->vertex_rows();
     const float max2 = max * max + (std::numeric_limits<float>::min)();
     for (std::size_t first = 0; first < rows.size(); first += Simd4::size()) {
@@ -75,7 +76,7 @@ class MidEdgeCorrection {
       const Simd4 kept = left * max2 / (max2 + dot(r, r));
       for (std::size_t k = 0; k < Simd4::size() && first + k < rows.size(); ++k) {
         const std::size_t v = 4 * (first + k);
-        store(raised + v, Simd4(Simd4(field + v) + kept[k] * by[k]));
+        store(out + v, Simd4(Simd4(field + v) + kept[k] * by[k]));
       }
     }
   }

@@ -71,8 +71,8 @@ class PatchTable {
         spread_(std::move(spread)) {}
 
   /// `load_mesh` and what a unit load at each of its nodes does: `influence`.
-  PatchTable(const ElementMesh& mesh, const MidEdgeTable& bends, const LoadMesh& load_mesh, unsigned threads,
-             const InfluenceFunctions& influence);
+  PatchTable(const ElementMesh& mesh, const MidEdgeTable& mid_edges, const LoadMesh& load_mesh,
+             unsigned threads, const InfluenceFunctions& influence);
 
   /// Position of s^2 in the table.
   struct Level {
