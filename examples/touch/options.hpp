@@ -20,7 +20,6 @@ struct Options {
   std::string shape;          ///< none, skeleton, half-space or response; empty: what suits the object
   double scale = 1;           ///< of mesh files
   char up = 'y';              ///< of mesh files
-  bool repair = false;        ///< of mesh files
   bool deformed = false;      ///< contact is looked for on the shape as it is now, not on the undeformed one
   double sweep = 0;           ///< how deep a point may get on its way [m]; 0: as deep as it is taken
   double at_x = 0, at_z = 0;  ///< where the scripts work [m]
@@ -30,7 +29,7 @@ struct Options {
   bool help = false;
 
   /// How to read the mesh file of this name.
-  [[nodiscard]] MeshFile file(const std::string& name) const { return {name, scale, up, repair}; }
+  [[nodiscard]] MeshFile file(const std::string& name) const { return {name, scale, up}; }
 };
 
 inline constexpr const char* usage =
@@ -40,7 +39,6 @@ inline constexpr const char* usage =
   --tool NAME     mallet (default), head, tail, sphere, pin, block, compass, or FILE.obj, .ply, .stl
   --scale S       metres per unit of the files (default 1)
   --up AXIS       the files' axis that points up: x, y (default) or z
-  --repair        weld, turn and drop in the files what is plainly wrong, and say so
   --script NAME   figure10 (default), press, slide, both: press with both pins of the compass
   --at X Z        where press, slide and both work, in metres from the object's middle (default 0 0)
   --shape MODEL   how the object deforms: skeleton, half-space, response, or none. Default: skeleton; of
@@ -105,8 +103,6 @@ inline Options parse(int argc, char** argv) {
       options.shape = value();
     else if (name == "--up")
       options.up = axis(value());
-    else if (name == "--repair")
-      options.repair = true;
     else if (name == "--detect")
       options.deformed = where(value());
     else if (name == "--sweep")
