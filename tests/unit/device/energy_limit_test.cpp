@@ -21,9 +21,17 @@ constexpr double k = 500;  // N/m
 constexpr double pi = std::numbers::pi;
 
 ContactState<double> touching(double depth, double force) {
-  return {
-      1,     1, ContactMode::frictionless, V::Zero(), V::UnitY(), V(0, -depth, 0), V(0, force, 0), V::Zero(),
-      force, 0};
+  return {1,
+          1,
+          ContactMode::frictionless,
+          V::Zero(),
+          V::UnitY(),
+          V(0, -depth, 0),
+          V(0, force, 0),
+          V::Zero(),
+          force,
+          0,
+          depth};
 }
 
 // A wall y < 0 whose force on the way out is `more` times that on the way in; in and out again 2 mm in a
