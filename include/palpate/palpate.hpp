@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file The paper's model in the order of the data flow. Two more cost compile time and are included on
-/// their own: the response field, <palpate/response/response_contact.hpp>, and the extremal points of a mesh,
+/// @file The paper's model in the order of the data flow. Three more cost compile time and are included on
+/// their own: the short way in, <palpate/touch.hpp>; the response field,
+/// <palpate/response/response_contact.hpp>; the extremal points of a mesh,
 /// <palpate/geometry/mesh_extremal_points.hpp>. Include single headers where compile time matters.
 
 // clang-format off
@@ -19,6 +20,8 @@
 #include <palpate/geometry/triangle_mesh.hpp>
 #include <palpate/geometry/mesh_surface.hpp>
 #include <palpate/geometry/sampled_surface.hpp>
+#include <palpate/geometry/grown_surface.hpp>
+#include <palpate/geometry/shared_surface.hpp>
 #include <palpate/geometry/deformed_surface.hpp>
 #include <palpate/geometry/extremal_points.hpp>
 
