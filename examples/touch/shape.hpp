@@ -149,7 +149,8 @@ struct FollowShape {
 template <class Body>
 [[nodiscard]] Shape make_shape(const std::string& model, const Body& body, const palpate::MeshData<S>& mesh) {
   if (model == "skeleton")
-    return skeleton_shape(make_beams(body), palpate::make_partition(body, mesh), bottom(body), mesh);
+    return skeleton_shape(make_beams(body), palpate::make_partition(body, mesh, bottom(body)), bottom(body),
+                          mesh);
   return mesh_shape(model, mesh, body.lower().y() + S(0.1) * (body.upper().y() - body.lower().y()));
 }
 

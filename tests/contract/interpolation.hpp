@@ -29,7 +29,7 @@ template <BlockInterpolation I>
     for (std::size_t from = 0; from < face.count; from += block_size) {
       const std::size_t count = std::min(block_size, face.count - from);
       Block<S> u[3] = {};
-      interpolation.add(load, f, from, count, nullptr, {u[0].value, u[1].value, u[2].value},
+      interpolation.add(load, f, from, count, {u[0].value, u[1].value, u[2].value},
                         {u[0].value, u[1].value, u[2].value});
       for (std::size_t i = 0; i < count; ++i)
         field[face.first + from + i] = Vec3<S>(u[0][i], u[1][i], u[2][i]);

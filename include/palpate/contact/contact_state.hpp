@@ -26,7 +26,7 @@ struct ContactState {
   Vec3<S> friction;      ///< F_ct on the tool [N]
   S normal_force;        ///< F_cn [N]
   S area;                ///< that carries the force (RegionSum::area) [m^2]; 0 for a single point
-  S depth;               ///< of the deepest point in the undeformed body [m]; a single point's is D_n
+  S depth;  ///< of the deepest point: in the body, or below p0's tangent plane where that is more [m]
 
   /// p0 up to the surface's curvature [m]; the surface point closest to it is p0.
   [[nodiscard]] Vec3<S> origin() const noexcept { return centre - displacement; }

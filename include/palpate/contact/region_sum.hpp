@@ -92,6 +92,12 @@ struct RegionSum {
     if (magnitude > S(0)) return moment / magnitude;
     return position;
   }
+  /// How deep the deepest point is: in the body, or below the plane through `origin` across `normal` where
+  /// that is more [m].
+  [[nodiscard]] S depth_below(const Vec3<S>& origin, const Vec3<S>& normal) const noexcept {
+    const S below = normal.dot(origin - position);
+    return below > deepest ? below : deepest;
+  }
   /// |force| [N].
   [[nodiscard]] S normal_force() const noexcept { return force.norm(); }
   /// Unit outward normal of the region: the direction of its force.
@@ -140,6 +146,7 @@ class PointForce {
     normal_force_ *= factor;
   }
   [[nodiscard]] S area() const noexcept { return S(0); }
+  [[nodiscard]] S depth_below(const Vec3<S>&, const Vec3<S>&) const noexcept { return deepest; }
   [[nodiscard]] Vec3<S> centre() const noexcept { return position; }
   [[nodiscard]] S normal_force() const noexcept { return normal_force_; }
   [[nodiscard]] Vec3<S> normal() const noexcept { return exit; }

@@ -54,14 +54,17 @@ class BeamSkeletonDeformation {
     const auto points = field_.partition().points();
     const auto& ends = regions_.skeleton().points();
     if (!is_finite(p_.fixed)) fail(name, "fixed must be finite");
-    if (ends.size() != points.size())
+    const bool has_fixed = points.size() == ends.size() + 1;
+    if (ends.size() != points.size() && !has_fixed)
       fail(name, "skeleton and partition must have the same extremal points",
            static_cast<double>(ends.size()));
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t i = 0; i < ends.size(); ++i) {
       if (ends[i].template cast<D>() != points[i].position)
         fail_at(name, "skeleton and partition must have the same position", "extremal point", i);
     }
-    released_.resize(points.size());
+    if (has_fixed && p_.fixed.template cast<D>() != points.back().position)
+      fail(name, "the partition's further corner must be at fixed");
+    released_.assign(points.size(), Vec3<S>::Zero());  // no beam ends at a further corner: it stays
     corners_.resize(points.size() * max_contacts);
   }
 
@@ -124,7 +127,7 @@ class BeamSkeletonDeformation {
   }
   [[nodiscard]] static ContactDisplacement<D> shown(const ContactState<S>& c) noexcept {
     return {c.origin().template cast<D>(), c.normal.template cast<D>(), c.displacement.template cast<D>(),
-            static_cast<D>(c.area), static_cast<D>(c.points)};
+            static_cast<D>(c.area),        static_cast<D>(c.points),    static_cast<D>(c.depth)};
   }
 
   Params p_;

@@ -8,6 +8,7 @@
 #include <palpate/core/simd.hpp>
 #include <palpate/display/vertex_writer.hpp>
 #include <palpate/elasticity/concept.hpp>
+#include <palpate/luo_xiao/detail/local_shape.hpp>
 #include <palpate/luo_xiao/detail/partition_normals.hpp>
 #include <palpate/luo_xiao/interpolation/blocks.hpp>
 #include <palpate/luo_xiao/neighbourhood.hpp>
@@ -48,15 +49,16 @@ class DisplacementField {
 
   /// `mesh` is the one that the interpolation's partition was made from.
   DisplacementField(Blocks interpolation, N neighbourhood, const MeshData<S>& mesh, const Params& params = {})
-      : p_(params), interpolation_(std::move(interpolation)), neighbourhood_(std::move(neighbourhood)) {
+      : p_(params),
+        interpolation_(std::move(interpolation)),
+        neighbourhood_(std::move(neighbourhood)),
+        local_(p_.contacts, mesh) {
     const FacePartition<S>& partition = interpolation_.partition();
     if (p_.contacts < 1) fail(name, "contacts must be >= 1", static_cast<double>(p_.contacts));
     if (mesh.vertices.size() != partition.size())
       fail(name, "mesh must be the partition's", static_cast<double>(mesh.vertices.size()));
     loads_.resize(p_.contacts);
     previous_.resize(p_.contacts);
-    reductions_.resize(p_.contacts);
-    previous_reductions_.resize(p_.contacts);
     contacts_.reserve(p_.contacts);
     corners_.reserve(p_.contacts * partition.points().size());
     dirty_.assign(partition.faces().size(), 1);
@@ -67,7 +69,7 @@ class DisplacementField {
   template <Real T>
   void write_rest(const VertexBuffer<T>& out) noexcept {
     std::fill(previous_.begin(), previous_.end(), Load{});
-    std::fill(previous_reductions_.begin(), previous_reductions_.end(), Reduction{});
+    local_.reset();
     previous_count_ = 0;
     contacts_.clear();
     corners_.clear();
@@ -115,7 +117,7 @@ class DisplacementField {
       if (with_normals) normals_.write_apart(partition(), dirty_, out);
     }
     loads_.swap(previous_);
-    reductions_.swap(previous_reductions_);
+    local_.swap();
     previous_count_ = count;
     return moved;
   }
@@ -157,27 +159,6 @@ class DisplacementField {
     }
   };
 
-  struct Reduction {  // V.B: where the contact's displacement is reduced, and by how much
-    Vec3<S> position = Vec3<S>::Zero();
-    S by = 0;      // 1 - w; 0: not at all
-    S radius = 0;  // R
-    [[nodiscard]] bool touches(const Face<S>& face) const noexcept {
-      const S reach = radius + face.radius;
-      return by > S(0) && (position - face.centre).squaredNorm() < reach * reach;
-    }
-    // 1 - (1 - w) b(r) at the vertices of a block.
-    PALPATE_INLINE void scale(const Lists<const S>& rest, std::size_t count, S* out) const noexcept {
-      const S px = position.x(), py = position.y(), pz = position.z(), per_square = S(1) / (radius * radius),
-              reduced = by;
-      for (std::size_t i = 0; i < count; i += V::size()) {
-        const V dx = V(rest[0] + i) - px, dy = V(rest[1] + i) - py, dz = V(rest[2] + i) - pz;
-        const V inside = (detail::max)(S(1) - (dx * dx + dy * dy + dz * dz) * per_square, V{});
-        (S(1) - reduced * inside * inside).copy_to(out + i);
-      }
-    }
-    [[nodiscard]] bool operator==(const Reduction&) const noexcept = default;
-  };
-
   // Takes the input; false when it is the same as in the last tick.
   bool take(std::span<const ContactDisplacement<S>> contacts, std::span<const Vec3<S>> corners) noexcept {
     if (std::equal(contacts.begin(), contacts.end(), contacts_.begin(), contacts_.end()) &&
@@ -187,15 +168,13 @@ class DisplacementField {
     corners_.assign(corners.begin(), corners.end());
     const std::size_t points = partition().points().size();
     for (std::size_t c = 0; c < p_.contacts; ++c) {
-      reductions_[c] = Reduction{};
       loads_[c].active = false;
+      local_.leave_out(c);
       if (c >= contacts.size()) continue;
-      interpolation_.prepare(corners.subspan(c * points, points), contacts[c], loads_[c]);
-      if constexpr (N::active) {
-        const S w = neighbourhood_.factor(contacts[c]), radius = neighbourhood_.radius(contacts[c]);
-        if (w < S(1) && radius > S(0) && is_drawable(contacts[c]))
-          reductions_[c] = {contacts[c].position, S(1) - w, radius};
-      }
+      ContactDisplacement<S> contact = contacts[c];
+      const auto bounded =
+          local_.prepare(c, neighbourhood_, partition(), contact, corners.subspan(c * points, points));
+      interpolation_.prepare(bounded, contact, loads_[c]);
     }
     active_ = contacts.size();
     return true;
@@ -204,10 +183,7 @@ class DisplacementField {
   [[nodiscard]] bool changed(std::size_t f) const noexcept {
     const Face<S>& face = partition().faces()[f];
     for (std::size_t c = 0; c < (std::max)(active_, previous_count_); ++c) {
-      if (!interpolation_.same(previous_[c], loads_[c], f)) return true;
-      if (reductions_[c] != previous_reductions_[c] &&
-          (reductions_[c].touches(face) || previous_reductions_[c].touches(face)))
-        return true;
+      if (!interpolation_.same(previous_[c], loads_[c], f) || local_.changed(c, face)) return true;
     }
     return false;
   }
@@ -227,7 +203,7 @@ class DisplacementField {
                                    const VertexBuffer<T>& out) noexcept {
     const Face<S>& face = partition().faces()[f];
     const Lists<const S> rest = partition().rest_from(face, from);
-    Block<S> moved[3], scale;
+    Block<S> moved[3];
     Lists<S> to{moved[0].value, moved[1].value, moved[2].value};
     if constexpr (std::same_as<S, float>) {
       if (p_.normals) to = normals_.positions_from(from);
@@ -236,11 +212,16 @@ class DisplacementField {
     bool is_moved = false;
     for (std::size_t c = 0; c < active_; ++c) {
       if (!interpolation_.moves(loads_[c], f)) continue;
-      const bool is_reduced = reductions_[c].touches(face);
-      if (is_reduced) reductions_[c].scale(rest, count, scale.value);
-      interpolation_.add(loads_[c], f, from, count, is_reduced ? scale.value : nullptr,
-                         is_moved ? there : rest, to);
+      interpolation_.add(loads_[c], f, from, count, is_moved ? there : rest, to);
       is_moved = true;
+    }
+    if constexpr (N::active) {
+      for (std::size_t c = 0; c < active_; ++c) {
+        if (!local_.touches(c, face)) continue;
+        if (!is_moved) copy(rest, count, to);
+        local_.apply(c, rest, count, to);
+        is_moved = true;
+      }
     }
     const Lists<const S>& at = is_moved ? there : rest;
     extent.take(at, count);
@@ -248,14 +229,20 @@ class DisplacementField {
     if (p_.normals) normals_.set_positions(from, count, at);
   }
 
+  static void copy(const Lists<const S>& from, std::size_t count, const Lists<S>& to) noexcept {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t i = 0; i < count; i += V::size()) V(from[axis] + i).copy_to(to[axis] + i);
+    }
+  }
+
   static constexpr const char* name = "DisplacementField";
 
   Params p_;
   Blocks interpolation_;
   PALPATE_NO_UNIQUE_ADDRESS N neighbourhood_;
+  PALPATE_NO_UNIQUE_ADDRESS detail::LocalShapes<N> local_;
   PartitionNormals<S> normals_;
   std::vector<Load> loads_, previous_;
-  std::vector<Reduction> reductions_, previous_reductions_;
   std::vector<ContactDisplacement<S>> contacts_;
   std::vector<Vec3<S>> corners_;
   std::vector<std::uint8_t> dirty_;

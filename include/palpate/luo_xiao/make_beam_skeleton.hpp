@@ -38,11 +38,12 @@ template <template <class> class I = PhongInterpolation, std::size_t Contacts = 
                                       bool normals = true) {
   using S = typename Body::Scalar;
   using Model = BeamSkeleton<Beam, Section, I<S>, N, S, Contacts>;
+  const Vec3<S> fixed = bottom_centre(body);
   std::vector<Vec3<S>> ends;
   for (const auto& point : extremal_points(body)) ends.push_back(point.position);
   return Model(typename Model::Regions(Skeleton<S, Beam, Section>(ends, beam, section)),
-               I<S>(make_partition(body, mesh)), neighbourhood, mesh,
-               {.fixed = bottom_centre(body), .normals = normals});
+               I<S>(make_partition(body, mesh, fixed)), neighbourhood, mesh,
+               {.fixed = fixed, .normals = normals});
 }
 
 }  // namespace palpate

@@ -318,6 +318,7 @@ class ContactSolver {
         wrench.torque += (anchored.at - X * centre_of_mass()).cross(anchored.friction);
       }
     }
+    contact.depth = sum.depth_below(contact.origin(), normal);
     wrench.force += contact.force;
     if constexpr (std::same_as<Acting, AtContact>) wrench.torque += sum.torque;
     state.contacts_.push_back(contact);

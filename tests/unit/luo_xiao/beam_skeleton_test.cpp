@@ -137,3 +137,30 @@ TEST_CASE("set-up refuses a skeleton over other points") {
   positions.pop_back();
   CHECK_THROWS_AS(make(), SetupError);
 }
+
+TEST_CASE("a further corner of the partition is the fixed point, and stays; another point is refused") {
+  using S = Scene<LinearInterpolation, double>;
+  auto mesh = body.mesh(100);
+  const Vec3<double> fixed = body.closest({0.01, -0.02, 0.003}).position;
+  mesh.vertices.push_back(fixed);
+  const auto make = [&](const Vec3<double>& further) {
+    return S::Model(
+        RegionSkeletons<S::Beams>(S::Beams(
+            S::positions(), EulerBernoulli<double>(IsotropicElasticity<double>({.E = 1e4, .nu = 0.5})),
+            VolumePreserving<double>({.volume = body.volume()}))),
+        LinearInterpolation<double>(make_partition(body, mesh, further)), AreaNeighbourhood<double>({}), mesh,
+        {.fixed = fixed, .normals = false});
+  };
+  auto model = make(fixed);
+  CHECK(model.field().partition().points().size() == 7);
+  std::vector<double> x(3 * mesh.vertices.size());
+  model.write_rest(VertexBuffer<double>{.positions = x.data()});
+  const std::vector contacts{pressed(body.closest({-0.02, -0.02, 0.003}).position, 2e-3, 0.5)};
+  CHECK(model.write(contacts, VertexBuffer<double>{.positions = x.data()}).vertices > 0);
+  const auto at = [&](std::size_t i) { return Vec3<double>(x[3 * i], x[3 * i + 1], x[3 * i + 2]); };
+  const std::size_t last = mesh.vertices.size() - 1;
+  CHECK((at(last) - fixed).norm() <= 1e-9 * 0.03);  // projected to its face along its ray: to rounding
+  const Vec3<double> elsewhere = body.closest({-0.01, -0.02, 0.003}).position;
+  CHECK_THROWS_WITH(make(elsewhere),
+                    "BeamSkeletonDeformation: the partition's further corner must be at fixed");
+}

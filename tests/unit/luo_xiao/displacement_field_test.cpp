@@ -234,7 +234,7 @@ TEST_CASE("input that is not finite or absurd: that contact is not drawn, and no
   field.write_rest(out.view);
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e200}) {
-    for (int entry = 0; entry < 5; ++entry) {
+    for (int entry = 0; entry < 6; ++entry) {
       Contacts contacts{pressed({0, 0.02, 0}, 1e-3)};
       Corners corners(6, Vec3<double>(1e-4, 0, 0));
       contacts[0].area = 1e-5;
@@ -243,6 +243,7 @@ TEST_CASE("input that is not finite or absurd: that contact is not drawn, and no
       if (entry == 2) contacts[0].area = bad;
       if (entry == 3) contacts[0].normal.z() = bad;
       if (entry == 4) corners[5].z() = bad;
+      if (entry == 5) contacts[0].depth = bad;
       field.write(contacts, corners, out.view);
       for (const float value : out.positions) CHECK(std::fabs(value) < 0.1f);
       for (const float value : out.normals) CHECK(std::fabs(value) <= 1.001f);
@@ -250,51 +251,103 @@ TEST_CASE("input that is not finite or absurd: that contact is not drawn, and no
   }
 }
 
-TEST_CASE("local neighbourhood: wD at the contact, the global shape outside R, and no kink at the rim") {
-  const auto check = [&]<class I>(const I&) {
+namespace {
+
+/// A square of 40 mm with its contact near the middle, and points at 0 to 10 mm from it along x.
+struct Profile {
+  static constexpr int steps = 600;
+  static constexpr double step = 0.01 / steps;
+  static inline const Vec3<double> p{0.001, 0.02, 0.002};
+
+  template <class I, class N>
+  static std::vector<Vec3<double>> of(const N& neighbourhood, double D, double area) {
     auto mesh = box.mesh(100);
-    const Vec3<double> p(0.001, 0.02, 0.002);
-    const double R = 0.006, w = 1 / (1 + std::log(10.0));
-    constexpr int steps = 600;
     const std::size_t first = mesh.vertices.size();
-    for (int i = 0; i <= steps; ++i)
-      mesh.vertices.push_back(p + Vec3<double>(0.01 * i / steps, 0, 0));  // r from 0 to 10 mm
-    using Field = DisplacementField<I, AreaNeighbourhood<double>>;
-    const auto field_with = [&](double area) {
-      Field field(I(make_partition(box, mesh)),
-                  AreaNeighbourhood<double>({.reference_area = 1e-6, .radius = R}), mesh, {.normals = false});
-      Buffer<double> out(mesh.vertices.size());
-      field.write_rest(out.view);
-      Contacts contacts{pressed(p, 1e-3)};
-      contacts[0].area = area;
-      field.write(contacts, Corners(8, Vec3<double>::Zero()), out.view);
-      std::vector<Vec3<double>> u;
-      for (std::size_t i = first; i < mesh.vertices.size(); ++i)
-        u.push_back(out.position(i) - mesh.vertices[i]);
-      return u;
-    };
-    const auto point = field_with(1e-6), wide = field_with(1e-5);
-    const double noise = 1e-17;  // of 0.02 + 0.001 - 0.02
-    CHECK((point[0] - Vec3<double>(0, -1e-3, 0)).norm() <= noise);
-    CHECK((wide[0] - Vec3<double>(0, -w * 1e-3, 0)).norm() <= noise);
-    double steepest = 0, last_slope = 0;
-    for (int i = 0; i <= steps; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      const double r = 0.01 * i / steps;
-      if (r > R * (1 + 1e-9)) CHECK(wide[k] == point[k]);
-      CHECK(wide[k].norm() <= point[k].norm() + noise);
-      // The difference of the two is c(r) = (1 - w) b(r): its slope is 0 at the rim and changes in no step.
-      if (i == 0) continue;
-      const double slope =
-          ((wide[k] - point[k]).norm() - (wide[k - 1] - point[k - 1]).norm()) / (0.01 / steps);
-      if (i > 1) steepest = std::max(steepest, std::fabs(slope - last_slope));
-      last_slope = slope;
+    for (int i = 0; i <= steps; ++i) mesh.vertices.push_back(p + Vec3<double>(step * i, 0, 0));
+    mesh.triangles.clear();  // no edges that a were widened by
+    DisplacementField<I, N> field(I(make_partition(box, mesh)), neighbourhood, mesh, {.normals = false});
+    Buffer<double> out(mesh.vertices.size());
+    field.write_rest(out.view);
+    Contacts contacts{pressed(p, D)};
+    contacts[0].area = area;
+    field.write(contacts, Corners(8, Vec3<double>::Zero()), out.view);
+    std::vector<Vec3<double>> u;
+    for (std::size_t i = first; i < mesh.vertices.size(); ++i)
+      u.push_back(out.position(i) - mesh.vertices[i]);
+    return u;
+  }
+  /// The largest change of slope of |u| - |g| from one step to the next.
+  static double kink(const std::vector<Vec3<double>>& u, const std::vector<Vec3<double>>& g) {
+    double most = 0, last = 0;
+    for (std::size_t i = 1; i < u.size(); ++i) {
+      const double slope = ((u[i].norm() - g[i].norm()) - (u[i - 1].norm() - g[i - 1].norm())) / step;
+      if (i > 1) most = std::max(most, std::fabs(slope - last));
+      last = slope;
     }
-    // Second derivative of b is at most 8 / R^2, of its product with the hat not much more; times the step.
-    CHECK(steepest <= 2 * 8 * 1e-3 / (R * R) * (0.01 / steps));
+    return most;
+  }
+};
+constexpr double noise = 1e-17;  // of 0.02 + 0.001 - 0.02
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("the tool's face: D within a, the field of w D beyond R, falling between without a kink",
+                   I, LinearInterpolation<double>, SmoothInterpolation<double>) {
+  const double D = 1e-3, R = 6e-3, area = 1e-5, w = 1 / (1 + std::log(10.0)),
+               a = std::sqrt(area / 3.14159265358979323846);
+  const auto u = Profile::of<I>(AreaNeighbourhood<double>({.reference_area = 1e-6, .radius = R}), D, area),
+             around = Profile::of<I>(NoNeighbourhood<double>{}, w * D, area);
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const double r = Profile::step * static_cast<double>(i);
+    if (r < a) CHECK((u[i] - Vec3<double>(0, -D, 0)).norm() <= noise);
+    if (r > R * (1 + 1e-9)) CHECK(u[i] == around[i]);
+    if (i > 0 && r < R) CHECK(u[i].norm() <= u[i - 1].norm() + noise);
+  }
+  // b = 1 - f(t), f = t^3 (10 - 15 t + 6 t^2): |f'| <= 15/8, |f''| <= 10/sqrt(3); t = (r^2 - a^2)/(R^2 - a^2).
+  // D - g changes slowly: half as much again for its part.
+  const double per_square = 1 / (R * R - a * a), steepest = 2 * R * per_square,
+               curved = 10 / std::sqrt(3.0) * steepest * steepest + 15.0 / 8 * 2 * per_square;
+  CHECK(Profile::kink(u, around) <= 1.5 * curved * D * Profile::step);
+}
+
+TEST_CASE_TEMPLATE("the printed form: w D at the contact, the field of D beyond R, no kink at R", I,
+                   LinearInterpolation<double>, SmoothInterpolation<double>) {
+  const double D = 1e-3, R = 6e-3, area = 1e-5, w = 1 / (1 + std::log(10.0));
+  const auto u =
+      Profile::of<I>(Printed<AreaNeighbourhood<double>>({.reference_area = 1e-6, .radius = R}), D, area);
+  const auto around = Profile::of<I>(NoNeighbourhood<double>{}, D, area);
+  CHECK((u[0] - Vec3<double>(0, -w * D, 0)).norm() <= noise);
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    const double r = Profile::step * static_cast<double>(i), s = std::min(r / R, 1.0),
+                 b = (1 - s * s) * (1 - s * s);
+    if (r > R * (1 + 1e-9)) CHECK(u[i] == around[i]);
+    CHECK((u[i] - (1 - (1 - w) * b) * around[i]).norm() <= noise);
+  }
+  // |b''| <= 8 / R^2; half as much again for the field's own slope.
+  CHECK(Profile::kink(u, around) <= 1.5 * 8 * D / (R * R) * Profile::step);
+}
+
+TEST_CASE("a point contact is not touched; corners move no more than w D a/l") {
+  const auto mesh = box.mesh(300);
+  const Contacts point{pressed({0.001, 0.02, 0.002}, 1e-3)};
+  const auto write = [&](auto neighbourhood, const Contacts& contacts, const Corners& corners) {
+    auto field = make_field<LinearInterpolation<double>>(box, mesh, neighbourhood);
+    Buffer<double> out(mesh.vertices.size());
+    field.write_rest(out.view);
+    field.write(contacts, corners, out.view);
+    return out.positions;
   };
-  check(LinearInterpolation<double>(make_partition(box, box.mesh(50))));
-  check(SmoothInterpolation<double>(make_partition(box, box.mesh(50))));
+  const AreaNeighbourhood<double> local({.reference_area = 1e-6});
+  const Corners none(8, Vec3<double>::Zero());
+  CHECK(write(local, point, none) == write(NoNeighbourhood<double>{}, point, none));
+  // Every corner at its bound, in its own direction: a point is as wide as it is deep.
+  Corners large(8, Vec3<double>(3e-3, -4e-3, 0)), bound = large;
+  const auto points = extremal_points(box);
+  for (std::size_t i = 0; i < bound.size(); ++i)
+    bound[i] *= 1e-3 * (1e-3 / (points[i].position - point[0].position).norm()) / 5e-3;
+  const auto drawn = write(local, point, large), expected = write(NoNeighbourhood<double>{}, point, bound);
+  for (std::size_t i = 0; i < drawn.size(); ++i)
+    CHECK_ABSOLUTE(drawn[i], expected[i], ulps<double>(2) * 0.02);
 }
 
 TEST_CASE_TEMPLATE("no heap in a tick", I, LinearInterpolation<double>, PhongInterpolation<double>,

@@ -40,6 +40,19 @@ TEST_CASE("factor by count: the paper's w = 1/(1 + ln n)") {
   CHECK(n.radius(c) == 0.01);
 }
 
+TEST_CASE("the printed form has the same w and R; a user chooses it by name") {
+  using Paper = Printed<CountNeighbourhood<double>>;
+  static_assert(Paper::form == NeighbourhoodForm::printed);
+  static_assert(CountNeighbourhood<double>::form == NeighbourhoodForm::tool_face);
+  const CountNeighbourhood<double> n({.radius = 0.01});
+  const Paper printed({.radius = 0.01});
+  ContactDisplacement<double> c;
+  c.points = 7;
+  CHECK(printed.factor(c) == n.factor(c));
+  CHECK(printed.radius(c) == n.radius(c));
+  CHECK_THROWS_WITH(Paper({.radius = -2}), "CountNeighbourhood: radius [m] must be >= 0, got -2");
+}
+
 TEST_CASE("radius: as given, else twice the region's") {
   ContactDisplacement<double> c;
   c.area = 3.14159265358979323846e-6;

@@ -92,9 +92,10 @@ struct HalfBeams {  // how contacts couple: any two that press share half a beam
 static_assert(RegionCoupling<HalfBeams>);
 
 // [extending]
-struct Halved {  // a local neighbourhood: half of D within 5 mm of a contact of several points
+struct Halved {  // a local neighbourhood: half of the dent around a contact of several points, from 5 mm on
   using Scalar = double;
   static constexpr bool active = true;
+  static constexpr auto form = palpate::NeighbourhoodForm::tool_face;
   using Contact = palpate::ContactDisplacement<double>;
   double factor(const Contact& contact) const noexcept { return contact.points > 1 ? 0.5 : 1; }
   double radius(const Contact&) const noexcept { return 5e-3; }
@@ -264,7 +265,7 @@ TEST_CASE("the user's policies together draw a shape, without the heap") {
   const auto moved = model.write({&contact, 1}, out);
   CHECK(heap.allocations() == 0);
   CHECK(moved.vertices > mesh.vertices.size() / 2);
-  // At the contact its weight is 1: half of D, by the user's neighbourhood.
+  // Under the tool the surface is the tool's face, whatever the user's w.
   const V at(x[x.size() - 3], x[x.size() - 2], x[x.size() - 1]);
-  CHECK((at - top.position - 0.5 * contact.displacement).norm() <= ulps<double>(40) * 0.03);
+  CHECK((at - top.position - contact.displacement).norm() <= ulps<double>(40) * 0.03);
 }

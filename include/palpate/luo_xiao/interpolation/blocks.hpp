@@ -36,7 +36,7 @@ class InterpolationBlocks : public detail::VectorLoads<typename P::Scalar> {
   }
 
   PALPATE_FLATTEN void add(const Load& load, std::size_t face, std::size_t from, std::size_t count,
-                           const S* scale, const Lists<const S>& start, const Lists<S>& to) const noexcept {
+                           const Lists<const S>& start, const Lists<S>& to) const noexcept {
     using V = detail::simd_group<S>;
     const FacePartition<S>& part = this->partition();
     const Face<S>& f = part.faces()[face];
@@ -44,8 +44,7 @@ class InterpolationBlocks : public detail::VectorLoads<typename P::Scalar> {
     std::array<FaceCorner<S>, max_face_corners + 1> corners;
     for (std::size_t k = 0; k < f.corners; ++k)
       corners[k] = {load.corner[f.corner[k]], part.points()[f.corner[k]].normal};
-    FaceCorner<S>& contact = corners[f.corners];
-    contact = {load.contact, load.normal};
+    corners[f.corners] = {load.contact, load.normal};
     detail::with_weights(part, load.at, face, from, [&](const auto& weights) PALPATE_INLINE_LAMBDA {
       std::array<std::array<S, V::size()>, max_face_corners + 1> weight;  // by corner, of a group of vertices
       const std::size_t terms = weights.terms();
@@ -55,7 +54,6 @@ class InterpolationBlocks : public detail::VectorLoads<typename P::Scalar> {
         for (std::size_t j = 0; j < V::size(); ++j) {  // what follows the last vertex is that one again
           std::array<S, max_face_corners + 1> own;
           for (std::size_t k = 0; k < terms; ++k) own[k] = weight[k][j];
-          if (scale != nullptr) contact.displacement = scale[i + j] * load.contact;
           const Vec3<S> u = policy_.displacement(std::span<const S>(own.data(), terms),
                                                  std::span<const FaceCorner<S>>(corners.data(), terms),
                                                  Vec3<S>(n[0][i + j], n[1][i + j], n[2][i + j]));

@@ -36,6 +36,7 @@ struct ContactDisplacement {
   Vec3<S> displacement = Vec3<S>::Zero();  ///< D [m]
   S area = 0;                              ///< of the region [m^2]; 0 for a single point
   S points = 1;                            ///< tool points in the region
+  S depth = 0;                             ///< of the tool in the undeformed body [m]; below D_n: D_n
 
   [[nodiscard]] bool operator==(const ContactDisplacement&) const noexcept = default;
 };
@@ -49,13 +50,13 @@ template <Real S>
 template <Real S>
 [[nodiscard]] inline bool is_drawable(const ContactDisplacement<S>& c) noexcept {
   return is_drawable(c.position) && is_finite(c.normal) && is_drawable(c.displacement) && is_finite(c.area) &&
-         is_finite(c.points);
+         is_finite(c.points) && is_finite(c.depth) && c.depth <= S(1e6);
 }
 
 /// A corner of a face as a `VertexInterpolation` sees it: an extremal point, or the contact.
 template <Real S>
 struct FaceCorner {
-  Vec3<S> displacement;  ///< u_i; of the contact D, reduced by the local neighbourhood (V.B) [m]
+  Vec3<S> displacement;  ///< u_i; of the contact w D (V.B) [m]
   Vec3<S> normal;        ///< of the undeformed surface there: outward, unit
 };
 
@@ -102,13 +103,13 @@ concept HasSame = requires(const I& field, const typename I::Load& load, std::si
 };
 
 /// to = start + the field of a load that moves the face, at `count` of its slots from number `from` on, at
-/// most `block_size` [m]. `start` and `to` may be the same. `scale`, if not null, multiplies the contact's
-/// displacement per vertex (V.B). All lists are read and written in whole `simd_group`s.
+/// most `block_size` [m]. `start` and `to` may be the same. All lists are read and written in whole
+/// `simd_group`s.
 template <class I>
 concept HasAdd = requires(const I& field, const typename I::Load& load, std::size_t face, std::size_t from,
-                          std::size_t count, const typename I::Scalar* scale,
-                          const Lists<const typename I::Scalar>& start, const Lists<typename I::Scalar>& to) {
-  { field.add(load, face, from, count, scale, start, to) } noexcept;
+                          std::size_t count, const Lists<const typename I::Scalar>& start,
+                          const Lists<typename I::Scalar>& to) {
+  { field.add(load, face, from, count, start, to) } noexcept;
 };
 
 /// An interpolation that works on blocks of vertices. Its field is continuous over the surface and in its

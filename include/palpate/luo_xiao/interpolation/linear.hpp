@@ -28,7 +28,7 @@ class LinearInterpolation : public detail::VectorLoads<S> {
   using detail::VectorLoads<S>::VectorLoads;
 
   PALPATE_FLATTEN void add(const Load& load, std::size_t face, std::size_t from, std::size_t count,
-                           const S* scale, const Lists<const S>& start, const Lists<S>& to) const noexcept {
+                           const Lists<const S>& start, const Lists<S>& to) const noexcept {
     using V = detail::simd_group<S>;
     const Face<S>& f = this->partition().faces()[face];
     using Terms = detail::FaceTerms<S, 3>;
@@ -39,9 +39,8 @@ class LinearInterpolation : public detail::VectorLoads<S> {
                          [&](const auto& weights) PALPATE_INLINE_LAMBDA {
                            for (std::size_t i = 0; i < count; i += V::size()) {
                              const auto w = weights.at(i);
-                             const V contact = scale == nullptr ? w.contact() : w.contact() * V(scale + i);
                              detail::unroll<3>([&](std::size_t axis) PALPATE_INLINE_LAMBDA {
-                               (V(start[axis] + i) + w.sum(value, axis, contact)).copy_to(to[axis] + i);
+                               (V(start[axis] + i) + w.sum(value, axis)).copy_to(to[axis] + i);
                              });
                            }
                          });

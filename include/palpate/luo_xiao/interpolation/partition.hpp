@@ -10,6 +10,7 @@
 #include <palpate/geometry/extremal_points.hpp>
 #include <palpate/luo_xiao/interpolation/detail/block.hpp>
 #include <palpate/luo_xiao/interpolation/detail/hull.hpp>
+#include <palpate/luo_xiao/interpolation/face.hpp>
 
 #include <Eigen/Geometry>
 
@@ -22,42 +23,6 @@
 #include <vector>
 
 namespace palpate {
-
-/// Corners of a face at most; flat facets of more corners are cut into triangles.
-inline constexpr std::size_t max_face_corners = 8;
-
-/// A face: a polygon of extremal points, and the run of sorted vertices ("slots") over it.
-template <Real S>
-struct Face {
-  std::size_t first = 0, count = 0;  ///< slots first .. first + count - 1
-  std::size_t row = 0;               ///< where its slots begin in an AlignedList of all faces
-  std::size_t length = 0;            ///< of its part there: count, in whole `simd_group`s
-  std::size_t weights = 0;           ///< where its weights start, corner by corner
-  std::size_t corners = 0;           ///< 3 .. max_face_corners
-  std::array<std::uint32_t, max_face_corners> corner{};  ///< extremal points, counter-clockwise from outside
-  std::uint64_t members = 0;                             ///< the same as bits
-  Vec3<S> centre = Vec3<S>::Zero();                      ///< of a ball around its vertices [m]
-  S radius = 0;                                          ///< of that ball [m]
-};
-
-/// Barycentric weights of a point of the surface, one per extremal point; all zero but its face's corners.
-template <Real S>
-struct PointWeights {
-  bool valid = false;  ///< false for a point that is not finite or is the centre
-  std::uint32_t face = 0;
-  std::array<S, max_extremal_points> weight{};
-};
-
-/// How a contact splits a face: what the weights of the face's vertices need, corner by corner. `V`: numbers,
-/// or the same in vector registers.
-template <class V>
-struct FaceSplit {
-  std::size_t corners;
-  V share;                                ///< max weight of the contact in the face; 0: not split
-  std::array<V, max_face_corners> P;      ///< weights of the contact's position
-  std::array<V, max_face_corners> per_P;  ///< 1 / max(P, h)
-  std::array<V, max_face_corners> lift;   ///< max(0, h - P) / max(P, h)
-};
 
 /// Faces and generalized barycentric weights over a surface that is star-shaped about a centre. No equation:
 /// V.A.2 leaves the partition open; docs/shape.md gives the reading and what it rules out.
@@ -372,17 +337,49 @@ template <Real S>
   return sorted;
 }
 
+namespace detail {
+/// The centre is the mean of all but the last `further` points, so that these do not shift it.
+template <class B, class Points, Real S>
+[[nodiscard]] FacePartition<S> partition_over(const B& body, const MeshData<S>& mesh, const Points& points,
+                                              std::size_t further,
+                                              const typename FacePartition<S>::Params& params) {
+  std::vector<Vec3<S>> normals;
+  normals.reserve(mesh.vertices.size());
+  for (const auto& vertex : mesh.vertices) normals.push_back(shading_normal(body, vertex));
+  Vec3<S> centre = Vec3<S>::Zero();
+  const std::size_t count = points.size() - further;
+  for (std::size_t i = 0; i < count; ++i) centre += points[i].position;
+  if (count > 0) centre /= static_cast<S>(count);
+  return FacePartition<S>(mesh, normals, points, centre, params);
+}
+}  // namespace detail
+
 /// Partition of a surface's display mesh over its own extremal points.
 template <HasClosest B>
   requires HasExtremalPoints<B>
 [[nodiscard]] FacePartition<typename B::Scalar> make_partition(
     const B& body, const MeshData<typename B::Scalar>& mesh,
     const typename FacePartition<typename B::Scalar>::Params& params = {}) {
-  std::vector<Vec3<typename B::Scalar>> normals;
-  normals.reserve(mesh.vertices.size());
-  for (const auto& vertex : mesh.vertices) normals.push_back(shading_normal(body, vertex));
-  const auto points = extremal_points(body);
-  return FacePartition<typename B::Scalar>(mesh, normals, points, params);
+  return detail::partition_over(body, mesh, extremal_points(body), 0, params);
+}
+
+/// The same with the point that does not move, `fixed` [m] (II: the bottom centre o), as a further corner,
+/// after the extremal points, if it lies on the surface (to a thousandth of the body's size) and is none of
+/// them: between the corners around it, it would move with them.
+template <HasClosest B>
+  requires HasExtremalPoints<B>
+[[nodiscard]] FacePartition<typename B::Scalar> make_partition(
+    const B& body, const MeshData<typename B::Scalar>& mesh, const Vec3<typename B::Scalar>& fixed,
+    const typename FacePartition<typename B::Scalar>::Params& params = {}) {
+  using S = typename B::Scalar;
+  auto points = extremal_points(body);
+  const S near = S(1e-3) * (body.upper() - body.lower()).norm();
+  const SurfacePoint<S> at = body.closest(fixed);
+  bool is_corner = is_finite(fixed) && std::abs(at.distance) <= near;
+  for (const ExtremalPoint<S>& point : points)
+    is_corner = is_corner && (point.position - fixed).norm() > near;
+  if (is_corner) points.push_back({fixed, shading_normal(body, at.position)});
+  return detail::partition_over(body, mesh, points, is_corner ? 1 : 0, params);
 }
 
 }  // namespace palpate

@@ -95,23 +95,19 @@ class PhongInterpolation {
   }
 
   PALPATE_FLATTEN void add(const Load& load, std::size_t face, std::size_t from, std::size_t count,
-                           const S* scale, const Lists<const S>& start, const Lists<S>& to) const noexcept {
+                           const Lists<const S>& start, const Lists<S>& to) const noexcept {
     using namespace detail;
     const Face<S>& f = partition_.faces()[face];
     using Terms = FaceTerms<S, terms>;
     Terms value;
     for (std::size_t k = 0; k < f.corners; ++k) value.corner[k] = Terms::row(load.corner[f.corner[k]].data());
     value.contact = Terms::row(load.contact.data());
-    // Only the contact's displacement is reduced; its direction counts in full.
-    const auto reduced = [&](const auto& w, std::size_t i) PALPATE_INLINE_LAMBDA {
-      return scale == nullptr ? w.contact() : w.contact() * V(scale + i);
-    };
     // Several short loops: each operation of one long loop would wait for the one before it.
     Sums sum;
     with_weights(partition_, load.at, face, from, [&](const auto& weights) PALPATE_INLINE_LAMBDA {
       for (std::size_t i = 0; i < count; i += V::size()) {
         const auto w = weights.at(i);
-        w.sum(value, magnitude, reduced(w, i)).copy_to(&sum[magnitude][i]);
+        w.sum(value, magnitude).copy_to(&sum[magnitude][i]);
         unroll<linear - direction>([&](std::size_t k) PALPATE_INLINE_LAMBDA {
           w.sum(value, direction + k).copy_to(&sum[direction + k][i]);
         });
@@ -125,9 +121,8 @@ class PhongInterpolation {
         const V part(&missing[i]);
         if (!any_of(part > V{})) continue;
         const auto w = weights.at(i);
-        const V contact = reduced(w, i);
         unroll<3>([&](std::size_t axis) PALPATE_INLINE_LAMBDA {
-          store(to[axis] + i, V(to[axis] + i) + part * w.sum(value, linear + axis, contact));
+          store(to[axis] + i, V(to[axis] + i) + part * w.sum(value, linear + axis));
         });
       }
     });

@@ -36,10 +36,6 @@ class SmoothInterpolation {
     std::array<Vec3<S>, max_extremal_points> kernel;  // read for active loads only
     Vec3<S> moving = Vec3<S>::Zero();
     std::array<Vec3<S>, 4> affine{};
-    std::array<S, max_extremal_points> own{};  // H, for the local neighbourhood
-    S own_moving = 0;
-    std::array<S, 4> own_affine{};
-    Vec3<S> contact = Vec3<S>::Zero();  // D
   };
 
   explicit SmoothInterpolation(FacePartition<S> partition)
@@ -80,10 +76,6 @@ class SmoothInterpolation {
     spline_.cardinals(p, cardinal.data());
     spline_.moving(p, cardinal.data(), own);
     load.position = p.template cast<S>();
-    load.contact = contact.displacement;
-    load.own_moving = static_cast<S>(own.moving);
-    for (std::size_t j = 0; j < spline_.size(); ++j) load.own[j] = static_cast<S>(own.kernel[j]);
-    for (std::size_t a = 0; a < 4; ++a) load.own_affine[a] = static_cast<S>(own.affine[a]);
     for (int axis = 0; axis < 3; ++axis) {
       double rest = static_cast<double>(contact.displacement[axis]);
       for (std::size_t i = 0; i < spline_.size(); ++i) {
@@ -107,68 +99,56 @@ class SmoothInterpolation {
     for (std::size_t j = 0; j < spline_.size(); ++j) {
       if (a.kernel[j] != b.kernel[j]) return false;
     }
-    return a.position == b.position && a.moving == b.moving && a.affine == b.affine && a.contact == b.contact;
+    return a.position == b.position && a.moving == b.moving && a.affine == b.affine;
   }
 
   PALPATE_FLATTEN void add(const Load& load, std::size_t face, std::size_t from, std::size_t count,
-                           const S* scale, const Lists<const S>& start, const Lists<S>& to) const noexcept {
+                           const Lists<const S>& start, const Lists<S>& to) const noexcept {
     const std::size_t first = partition_.faces()[face].row + from;
     const Terms terms(load, spline_.size());
     for (std::size_t i = 0; i < count; i += V::size()) {
-      if (scale == nullptr) {
-        V u[3];
-        evaluate(load, terms, first + i, u);
-        detail::unroll<3>([&](std::size_t axis) PALPATE_INLINE_LAMBDA {
-          (V(start[axis] + i) + u[axis]).copy_to(to[axis] + i);
-        });
-      } else {
-        V u[4];
-        evaluate(load, terms, first + i, u);
-        const V less = u[3] * (V(scale + i) - S(1));
-        detail::unroll<3>([&](std::size_t axis) PALPATE_INLINE_LAMBDA {
-          (V(start[axis] + i) + (u[axis] + less * load.contact[static_cast<int>(axis)]))
-              .copy_to(to[axis] + i);
-        });
-      }
+      V u[3];
+      evaluate(load, terms, first + i, u);
+      detail::unroll<3>([&](std::size_t axis)
+                            PALPATE_INLINE_LAMBDA { (V(start[axis] + i) + u[axis]).copy_to(to[axis] + i); });
     }
   }
 
  private:
   using V = detail::simd_group<S>;
 
-  struct Terms {  // coefficients of u_x, u_y, u_z and H
-    using Row = std::array<detail::simd_factor<S>, 4>;
+  struct Terms {  // coefficients of u_x, u_y, u_z
+    using Row = std::array<detail::simd_factor<S>, 3>;
     std::array<Row, 4> affine;
     Row moving;
     std::array<Row, max_extremal_points> kernel;
 
     PALPATE_INLINE Terms(const Load& load, std::size_t kernels) noexcept {
-      for (std::size_t a = 0; a < 4; ++a) affine[a] = row(load.affine[a], load.own_affine[a]);
-      moving = row(load.moving, load.own_moving);
-      for (std::size_t j = 0; j < kernels; ++j) kernel[j] = row(load.kernel[j], load.own[j]);
+      for (std::size_t a = 0; a < 4; ++a) affine[a] = row(load.affine[a]);
+      moving = row(load.moving);
+      for (std::size_t j = 0; j < kernels; ++j) kernel[j] = row(load.kernel[j]);
     }
-    static PALPATE_INLINE Row row(const Vec3<S>& u, S own) noexcept {
+    static PALPATE_INLINE Row row(const Vec3<S>& u) noexcept {
       using F = detail::simd_factor<S>;
-      return {F(u.x()), F(u.y()), F(u.z()), F(own)};
+      return {F(u.x()), F(u.y()), F(u.z())};
     }
   };
 
-  // The first N functions at the group of slots from entry `at` of the lists on.
-  template <std::size_t N>
+  // The displacements at the group of slots from entry `at` of the lists on.
   PALPATE_INLINE void evaluate(const Load& load, const Terms& terms, std::size_t at,
-                               V (&u)[N]) const noexcept {
+                               V (&u)[3]) const noexcept {
     using detail::unroll;
     const V vx(&reduced_[0][at]), vy(&reduced_[1][at]), vz(&reduced_[2][at]);
     const V dx = vx - load.position.x(), dy = vy - load.position.y(), dz = vz - load.position.z(),
             square = dx * dx + dy * dy + dz * dz, moving = square * square * inverse_sqrt(square);
-    unroll<N>([&](std::size_t k) PALPATE_INLINE_LAMBDA {
+    unroll<3>([&](std::size_t k) PALPATE_INLINE_LAMBDA {
       u[k] = V(terms.affine[0][k]) + vx * terms.affine[1][k] + vy * terms.affine[2][k] +
              vz * terms.affine[3][k] + moving * terms.moving[k];
     });
     const S* kernel = &kernels_[at];
     for (std::size_t j = 0; j < spline_.size(); ++j, kernel += partition_.list_length()) {
       const V here(kernel);
-      unroll<N>([&](std::size_t k) PALPATE_INLINE_LAMBDA { u[k] = u[k] + here * terms.kernel[j][k]; });
+      unroll<3>([&](std::size_t k) PALPATE_INLINE_LAMBDA { u[k] = u[k] + here * terms.kernel[j][k]; });
     }
   }
 

@@ -62,29 +62,22 @@ class GroupWeights {
     }
   }
 
-  /// mu; 0 where the face is not split.
-  [[nodiscard]] PALPATE_INLINE const V& contact() const noexcept { return contact_; }
   /// work(k, weight) of every corner, and of the contact as the last one where it splits the face.
   template <class Work>
   PALPATE_INLINE void each_term(const Work& work) const noexcept {
     each_corner([&](std::size_t k) PALPATE_INLINE_LAMBDA { work(k, corner_[k]); });
     if constexpr (Split) work(N == 0 ? corners_ : N, contact_);
   }
-  /// sum_k w_k corner_k + contact_weight contact, of term number `term`.
+  /// sum_k w_k corner_k + mu contact, of term number `term`.
   template <std::size_t Terms>
-  [[nodiscard]] PALPATE_INLINE V sum(const FaceTerms<S, Terms>& of, std::size_t term,
-                                     const V& contact_weight) const noexcept {
+  [[nodiscard]] PALPATE_INLINE V sum(const FaceTerms<S, Terms>& of, std::size_t term) const noexcept {
     V sum{};
     each_corner([&](std::size_t k) PALPATE_INLINE_LAMBDA {
       const V part = corner_[k] * of.corner[k][term];
       sum = k == 0 ? part : sum + part;
     });
-    if constexpr (Split) sum = sum + contact_weight * of.contact[term];
+    if constexpr (Split) sum = sum + contact_ * of.contact[term];
     return sum;
-  }
-  template <std::size_t Terms>
-  [[nodiscard]] PALPATE_INLINE V sum(const FaceTerms<S, Terms>& of, std::size_t term) const noexcept {
-    return sum(of, term, contact_);
   }
 
  private:
