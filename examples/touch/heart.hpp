@@ -138,8 +138,8 @@ class Heart {
     return radius(u) * u;
   }
 
-  /// The lobes' tops first.
-  static constexpr std::size_t bump_count = 6;
+  static constexpr std::size_t bump_count = 9;
+  /// Lobes, cleft, tip, front, back; then what refines cleft and tip.
   [[nodiscard]] V bump(std::size_t k) const noexcept { return on_ray(bumps[k].direction); }
 
  private:
@@ -147,12 +147,16 @@ class Heart {
     V direction;
     double height, sharpness;
   };
-  static inline const std::array<Bump, bump_count> bumps{{{V(-0.6, 0.8, 0), 0.42, 4},
-                                                          {V(0.6, 0.8, 0), 0.42, 4},
-                                                          {V(0, 1, 0), -0.42, 7},
-                                                          {V(0, -1, 0), 0.6, 4},
-                                                          {V(0, 0, 1), -0.3, 2},
-                                                          {V(0, 0, -1), -0.3, 2}}};
+  static inline const std::array<Bump, bump_count> bumps{
+      {{V(-0.6, 0.8, 0), 0.5, 5},  // lobes
+       {V(0.6, 0.8, 0), 0.5, 5},
+       {V(0, 1, 0), -0.5, 7},   // the cleft, from front to back
+       {V(0, -1, 0), 0.42, 4},  // tip
+       {V(0, 0, 1), -0.3, 2},   // flatter than wide
+       {V(0, 0, -1), -0.3, 2},
+       {V(0, 0.8, 0.6), -0.18, 8},
+       {V(0, 0.8, -0.6), -0.18, 8},
+       {V(0, -1, 0), 0.26, 18}}};  // the tip's point
 
   struct Local {
     V normal;
@@ -239,7 +243,7 @@ static_assert(palpate::ParametricSurface<Heart>);
 [[nodiscard]] inline std::vector<palpate::ExtremalPoint<double>> extremal_points(const Heart& heart) {
   std::vector<palpate::ExtremalPoint<double>> points;
   const auto add = [&](const Heart::V& p) { points.push_back({p, heart.normal(p)}); };
-  for (std::size_t k = 0; k < Heart::bump_count; ++k) add(heart.bump(k));
+  for (std::size_t k = 0; k < 6; ++k) add(heart.bump(k));
   add(heart.on_ray(Heart::V(-1, -0.1, 0)));
   add(heart.on_ray(Heart::V(1, -0.1, 0)));
   return points;

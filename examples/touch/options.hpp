@@ -7,17 +7,25 @@
 #include <cstdlib>
 #include <string>
 
+#if __has_include(<unistd.h>)
+#include <unistd.h>
+#endif
+
 #include "mesh_file.hpp"
 
 namespace touch {
+
+using S = double;
+using V = palpate::Vec3<S>;
 
 struct Options {
   std::string object = "ellipsoid";
   std::string tool = "mallet";
   std::string script = "figure10";
   std::string out = "out";
-  std::string scene;          ///< empty: none
-  std::string shape;          ///< none, skeleton, half-space or response; empty: what suits the object
+  std::string scene;          ///< empty: none; "all": one after the other
+  std::string shape;          ///< none, skeleton, half-space or response; empty: the default
+  bool paper = false;         ///< the model as the paper has it
   double scale = 1;           ///< of mesh files
   char up = 'y';              ///< of mesh files
   bool deformed = false;      ///< contact is looked for on the shape as it is now, not on the undeformed one
@@ -35,17 +43,22 @@ struct Options {
 inline constexpr const char* usage =
     R"(palpate_touch: a tool, held by a haptic device, presses and slides on an elastic object.
 
-  --object NAME   ellipsoid (default), sphere, box, cylinder, superellipsoid, or FILE.obj, .ply, .stl
+  (no option)     a mallet moves along an ellipsoid of silicone rubber; its response field gives the force
+                  and the shape
+  --paper         the model of the paper: its force law, and a beam skeleton for the shape. Alone: all
+                  scenes of its figures 10 to 12
+
+  --object NAME   ellipsoid (default), sphere, box, cube, cylinder, superellipsoid, heart, or FILE.obj, .ply,
+                  .stl
   --tool NAME     mallet (default), head, tail, sphere, pin, block, compass, or FILE.obj, .ply, .stl
   --scale S       metres per unit of the files (default 1)
   --up AXIS       the files' axis that points up: x, y (default) or z
   --script NAME   figure10 (default), press, slide, both: press with both pins of the compass
   --at X Z        where press, slide and both work, in metres from the object's middle (default 0 0)
-  --shape MODEL   how the object deforms: skeleton, half-space, response, or none. Default: skeleton; of
-                  files half-space. With response the force is the field's too, that of a soft rubber; else
-                  the law of the paper
+  --shape MODEL   how the object deforms: response (default; of files half-space), half-space, skeleton (with
+                  --paper), or none. With response the force is the field's too; else the law of the paper
   --detect WHERE  undeformed (default): contact is found on the object's shape at rest; deformed: on the
-                  shape of the last tick, worked out in the servo loop; for mesh files
+                  shape of the last tick, worked out in the servo loop
   --sweep DEPTH   a fast tool is stopped where a point of it would get deeper than DEPTH, in metres, so that
                   it does not pass through thin parts: at most 0.4 of the thinnest. Stopped, it does not
                   slide. Default: not stopped
@@ -53,8 +66,8 @@ inline constexpr const char* usage =
   --stepped       simulated time instead of real time: same bits in every run (stand-in device only)
   --out FOLDER    where the results go (default out)
 
-  --scene NAME    a preset of object, tool, script and shape in out/NAME, in simulated time: ellipsoid
-                  (Fig. 10), cube-head and cube-tail (Fig. 11), heart (Fig. 12)
+  --scene NAME    a preset of object, tool and script in out/NAME, with --paper out/paper/NAME, in simulated
+                  time: ellipsoid (Fig. 10), cube-head and cube-tail (Fig. 11), heart (Fig. 12), or all
   --real-time     the scene at the device's own pace
 )";
 
@@ -117,6 +130,8 @@ inline Options parse(int argc, char** argv) {
       options.scale = number();
     else if (name == "--rate")
       options.rate = number();
+    else if (name == "--paper")
+      options.paper = true;
     else if (name == "--scene")
       options.scene = value();
     else if (name == "--stepped")
@@ -128,7 +143,17 @@ inline Options parse(int argc, char** argv) {
     else
       refuse("unknown option " + name);
   }
+  if (options.paper && argc == 2) options.scene = "all";
   return options;
+}
+
+/// Is the output a terminal, so that a progress line can be written over and over?
+[[nodiscard]] inline bool is_terminal() {
+#if __has_include(<unistd.h>)
+  return isatty(STDOUT_FILENO) != 0;
+#else
+  return false;
+#endif
 }
 
 }  // namespace touch

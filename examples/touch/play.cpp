@@ -2,11 +2,13 @@
 
 #include "play.hpp"
 
-#include <palpate/calibrate/response_map.hpp>
-
 #include <cmath>
+#include <filesystem>
 #include <fstream>
-#include <numbers>
+
+#include "scenes.hpp"
+#include "scripts.hpp"
+#include "session.hpp"
 
 namespace touch {
 
@@ -14,15 +16,15 @@ namespace {
 
 constexpr std::size_t most_frames = 36;
 
-/// One line per region and tick in contact. Without a shape w is 1.
-void write_contacts(const std::string& file, const Device& device, const Shape* shape) {
+/// One line per region and tick in contact. Other shapes than the paper's have no w: 1.
+void write_contacts(const std::string& file, const Device& device, bool skeleton) {
   std::ofstream csv(file);
   csv << "t_s,region,tool_x_m,F_x_N,F_y_N,F_z_N,force_N,D_m,area_m2,w,modified_D_m\n";
   for (std::size_t i = 0; i < device.recorded(); ++i) {
     const auto& r = device.recording()[i];
     for (std::size_t j = 0; j < r.result.contacts.size(); ++j) {
       const palpate::ContactState<S>& c = r.result.contacts[j];
-      const S w = shape != nullptr ? shape->factor(c) : 1, D = c.displacement.norm();
+      const S w = skeleton ? local_factor(c) : 1, D = c.displacement.norm();
       csv << r.t << ',' << c.id << ',' << r.result.pose.to_tool(c.centre).x() << ',' << c.force.x() << ','
           << c.force.y() << ',' << c.force.z() << ',' << c.force.norm() << ',' << D << ',' << c.area << ','
           << w << ',' << w * D << '\n';
@@ -45,53 +47,86 @@ void print_steps(const Device& device) {
   std::printf("force step     %.4f N in a tick at most; %.4f N where a region appears\n", largest, landing);
 }
 
+/// The shape beside the servo loop: newest contacts into the vertices, and some of them kept as frames.
+class Pictured {
+ public:
+  Pictured(Feel& feel, const Body& body, double seconds) : feel_(feel), drawing_(body.display) {
+    feel.draw_rest(drawing_.buffer());
+    stride_ = static_cast<std::size_t>(std::ceil((seconds - begin) * update_rate / most_frames));
+  }
+
+  void update(const Device::Record& record) {
+    const Felt& felt = record.result;
+    const auto start = std::chrono::steady_clock::now();
+    const auto moved = feel_.draw({felt.contacts.begin(), felt.contacts.size()}, drawing_.buffer());
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+    if (moved.vertices > 0) seconds_ += spent.count(), ++updates_;
+    // From first contact on, at even distances of the updates.
+    if (record.t >= begin && seen_++ % stride_ == 0)
+      frames_.push_back({record.t, felt, drawing_.positions(), drawing_.normals()});
+  }
+  [[nodiscard]] const std::vector<Frame>& frames() const noexcept { return frames_; }
+  void report(const std::string& shape) const {
+    const double mean = updates_ > 0 ? seconds_ / static_cast<double>(updates_) : 0;
+    std::printf(
+        "shape          %s, %zu vertices, %zu updates that moved something, %.0f us each: %.0f a second\n",
+        shape.c_str(), drawing_.positions().size(), updates_, 1e6 * mean, mean > 0 ? 1 / mean : 0);
+  }
+
+ private:
+  static constexpr double begin = 1.0;  // [s]
+
+  Feel& feel_;
+  Drawing drawing_;
+  std::vector<Frame> frames_;
+  std::size_t stride_ = 1, seen_ = 0, updates_ = 0;
+  double seconds_ = 0;
+};
+
+std::unique_ptr<Feel> make_feel(const Options& options, const Body& body, const Tool& tool, Answer answer) {
+  if (options.deformed) return feel_deformed(options, body, tool, std::move(answer));
+  if (options.object == "ellipsoid") return feel_ellipsoid(options, body, tool, std::move(answer));
+  return feel_samples(options, body, tool, std::move(answer));
+}
+
 }  // namespace
 
-palpate::DuffingMap<S> field_force(const palpate::ResponseField& field, const AnyBody& body, const Tool& tool,
-                                   const V& top) {
-  const S radius = std::sqrt(tool.contact_area / std::numbers::pi_v<S>);
-  auto fitted =
-      palpate::response_map(field, body,
-                            palpate::ResponseMapParams<S>{
-                                .radius = radius, .depth = 2 * radius, .spacing = field.mesh().length / 2});
-  const auto law = fitted.map.at(top).params();
-  std::printf("force          of the field: c1 %.0f N/m, c3 %.2g N/m^3 on top, fits within %.1f %%\n", law.c1,
-              law.c3, 100 * fitted.worst_rms);
-  return std::move(fitted.map);
-}
+int play(Options options) {
+  if (!options.scene.empty()) {
+    preset(options);
+    options.out += "/" + options.scene;
+    options.stepped = !options.real_time;
+  }
+  std::filesystem::create_directories(options.out);
+  std::filesystem::remove_all(options.out + "/frames");  // those of an earlier run
+  const Body body = make_body(options);
+  if (options.shape.empty())
+    options.shape = options.paper ? "skeleton" : body.is_file ? "half-space" : "response";
+  const Tool tool = make_tool(options);
+  const Script script = make_script(options, body, tool);
+  Answer answer = make_answer(options, body, tool);
+  const bool drawn = answer.shape.exists();
+  const std::unique_ptr<Feel> feel = make_feel(options, body, tool, std::move(answer));
 
-void prepare_folder(const std::string& out) {
-  std::filesystem::create_directories(out);
-  std::filesystem::remove_all(out + "/frames");  // those of an earlier run
-}
-
-int play(const Stage& stage, Feel& feel, const std::function<void()>& report) {
-  const Options& options = stage.options;
-  std::optional<Shape>& shape = stage.shape;
-  // Frames from first contact on, at even distances of the updates.
-  constexpr double begin = 1.0;
-  const auto stride =
-      static_cast<std::size_t>(std::ceil((stage.script.seconds - begin) * update_rate / most_frames));
-  std::size_t updates = 0;
-  std::vector<Frame> frames;
+  const std::string title = title_of(options, body);
+  Pictured picture(*feel, body, script.seconds);
   const auto update = [&](const Device::Record& record) {
-    if (!shape) return;
-    shape->update(record.result);
-    if (record.t >= begin && updates++ % stride == 0) frames.push_back(shape->frame(record.t, record.result));
+    if (drawn) picture.update(record);
   };
   const auto finish = [&](const Device& device) {
-    if (report) report();
+    if (options.deformed)
+      std::printf("detection      on the deformed shape, bulges up to %.3f mm\n",
+                  1e3 * feel->highest_bulge());
     print_steps(device);
-    write_contacts(options.out + "/contacts.csv", device, shape ? &*shape : nullptr);
-    if (!shape) return;
-    std::printf("shape          %s, %zu vertices, %zu updates that moved something, %.0f us each\n",
-                options.shape.c_str(), shape->rest().vertices.size(), shape->updates(),
-                1e6 * shape->mean_time());
-    write_series(options.out, "shape", shape->rest(), frames);
-    Pictures(options.out + "/frames", stage.view, shape->rest(), stage.tool).write(stage.title, frames);
-    std::printf("wrote          %s/shape.pvd, %zu frames\n", options.out.c_str(), frames.size());
+    write_contacts(options.out + "/contacts.csv", device, options.shape == "skeleton");
+    if (!drawn) return;
+    picture.report(options.shape);
+    write_series(options.out, "shape", body.display, picture.frames());
+    Pictures(options.out + "/frames", scene_view(options, body), body.display, tool)
+        .write(title, picture.frames());
+    std::printf("wrote          %s/shape.pvd, %zu frames\n", options.out.c_str(), picture.frames().size());
   };
-  return perform(options, feel, stage.tool, stage.script, stage.top, stage.title, update, finish);
+  return perform(options, *feel, tool, script, body.top(), title, update, finish);
 }
 
 }  // namespace touch

@@ -18,15 +18,6 @@ struct View {
   double per_newton = 25;  ///< length of the force arrow [mm/N]
 };
 
-/// From the front, the right and above, so that the body and a tool on it fit in.
-template <class Body>
-[[nodiscard]] View view_of(const Body& body) {
-  const V half = 500 * (body.upper() - body.lower());
-  const double size = half.norm();
-  const V at(0, 0.55 * half.y(), 0);
-  return {.from = at + size * V(0.85, 1.7, 3.7), .at = at, .angle = 34, .per_newton = std::round(0.2 * size)};
-}
-
 /// Colours of the displacement from none to most; for POV-Ray and for the legend.
 inline constexpr double palette[][4] = {{0, 0.90, 0.91, 0.92},
                                         {0.2, 0.99, 0.89, 0.62},
@@ -136,8 +127,9 @@ class Pictures {
     std::fputs("}} finish{ambient 0.3 diffuse 0.65 specular 0.08 roughness 0.03}}\n", out);
     std::fprintf(out, "// colour: displacement magnitude, 0 to %g mm\n", most);
     std::fputs(
-        "#declare Steel=texture{pigment{srgbt <0.35,0.45,0.55,0.45>} finish{ambient 0.25 diffuse 0.6 "
-        "specular 0.3}}\n"
+        "// What touches is glass, so that the contact is seen; the rest is steel.\n"
+        "#declare Glass=texture{pigment{srgbt <0.35,0.45,0.55,0.45>} finish{ambient 0.25 diffuse 0.6}}\n"
+        "#declare Steel=texture{pigment{srgb <0.45,0.5,0.56>} finish{ambient 0.25 diffuse 0.6}}\n"
         "#declare Force=texture{pigment{srgb <0.05,0.45,0.2>} finish{ambient 0.5 diffuse 0.5}}\n",
         out);
     std::fputs("#macro BodyFaces() ", out);
@@ -145,7 +137,7 @@ class Pictures {
     std::fputs("#end\n#declare Tool=union{mesh2{\n", out);
     vectors(out, "vertex_vectors", tool_.mesh.vertices, 1e3);
     faces(out, tool_.mesh.triangles);
-    std::fputs("}\n", out);
+    std::fputs("texture{Glass}}\n", out);
     for (const Rod& r : tool_.rods) rod(out, r);
     std::fputs("texture{Steel} no_shadow}\n", out);
   }
@@ -161,7 +153,7 @@ class Pictures {
       const double u = 1e3 * (frame.position[i] - rest_.vertices[i]).norm() / most;
       std::fprintf(out, ",\n<%.4f,0>", std::clamp(u, 0.0001, 0.9999));  // the gradient repeats at 1
     }
-    std::fputs("}\nBodyFaces()\ntexture{Body}}\nobject{Tool matrix", out);
+    std::fputs("}\nBodyFaces()\ntexture{Body} no_shadow}\nobject{Tool matrix", out);
     const palpate::Mat3<S>& R = frame.felt.pose.rotation;
     const V p = 1e3 * frame.felt.pose.translation;
     std::fprintf(out, "<%.6f,%.6f,%.6f, %.6f,%.6f,%.6f, %.6f,%.6f,%.6f, %.4f,%.4f,%.4f>}\n", R(0, 0), R(1, 0),

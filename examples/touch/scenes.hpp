@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Scenes: presets of object, tool, script, parameters and shape model, one for each of the paper's
-/// figures.
+/// @file  The presets of --scene.
 
-#include "options.hpp"
+#include "body.hpp"
+#include "povray.hpp"
 
 namespace touch {
 
-/// Runs options.scene and writes its results into options.out/<scene>.
-int run_scene(Options options);
+inline constexpr const char* all_scenes[] = {"ellipsoid", "cube-head", "cube-tail", "heart"};
+
+/// Object, tool and script of options.scene.
+void preset(Options& options);
+[[nodiscard]] std::string title_of(const Options& options, const Body& body);
+[[nodiscard]] View scene_view(const Options& options, const Body& body);
 
 }  // namespace touch

@@ -7,10 +7,6 @@
 #include <fstream>
 #include <thread>
 
-#if __has_include(<unistd.h>)
-#include <unistd.h>
-#endif
-
 namespace touch {
 
 namespace {
@@ -69,15 +65,6 @@ void print_summary(const Device& device) {
   std::printf("peak force     %.2f N\n", peak);
   std::printf("in contact     %zu ticks: %.0f %% stick, %.0f %% slip\n", contact, 100 - share, share);
   if (held > 0) std::printf("held back      %zu ticks\n", held);
-}
-
-/// Is the output a terminal, so that a progress line can be written over and over?
-bool is_terminal() {
-#if __has_include(<unistd.h>)
-  return isatty(STDOUT_FILENO) != 0;
-#else
-  return false;
-#endif
 }
 
 }  // namespace

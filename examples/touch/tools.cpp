@@ -2,6 +2,13 @@
 
 #include "tools.hpp"
 
+#include <palpate/geometry/box.hpp>
+#include <palpate/geometry/cylinder.hpp>
+#include <palpate/geometry/sphere.hpp>
+#include <palpate/geometry/superellipsoid.hpp>
+
+#include <cmath>
+
 namespace touch {
 
 namespace {
@@ -54,11 +61,17 @@ Tool make_tool(const Options& options) {
   if (name == "compass") {  // two pins 36 mm apart; the origin is the tip of the one at -x
     constexpr S radius = 2e-3;
     const V one(0, radius, 0), two(compass_width, radius, 0), hinge(compass_width / 2, 60e-3, 0);
+    const V through(0, 0, 5e-3);  // the bolt in the hinge
     return {spheres({one, two}, radius, 400),
             5e-5,  // a whole pin's surface: it can sink in
             0.25e-3,
             hinge,
-            {{one, hinge, 1.2e-3}, {two, hinge, 1.2e-3}, {hinge, hinge + V(0, 14e-3, 0), 2.5e-3}}};
+            {{one, hinge, 1.2e-3},
+             {two, hinge, 1.2e-3},
+             {one + 0.55 * (hinge - one), hinge, 2e-3},  // legs are thicker above the pins
+             {two + 0.55 * (hinge - two), hinge, 2e-3},
+             {hinge - through, hinge + through, 5e-3},
+             {hinge, hinge + V(0, 16e-3, 0), 2.5e-3}}};
   }
   if (name == "sphere") {
     return {standing(Sphere<S>({.radius = 6e-3}).mesh(1000)), 5e-5, 0.5e-3, V(0, 6e-3, 0)};

@@ -3,15 +3,11 @@
 
 /// @file  The rigid tools of the example. Each has its origin where it touches first, and y up.
 
-#include <palpate/palpate.hpp>
+#include <vector>
 
-#include "mesh_file.hpp"
 #include "options.hpp"
 
 namespace touch {
-
-using S = double;
-using V = palpate::Vec3<S>;
 
 /// A round bar.
 struct Rod {

@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-#include "shape.hpp"
+#include "felt.hpp"
 
 namespace touch {
 
@@ -30,6 +30,16 @@ inline std::string numbered(const std::string& name, std::size_t number, const c
   std::snprintf(text, sizeof text, "_%03zu", number);
   return name + text + extension;
 }
+
+/// One kept moment.
+struct Frame {
+  double t;  ///< [s]
+  Felt felt;
+  std::vector<V> position, normal;  ///< of the display mesh's vertices [m], [-]
+
+  /// All that the tool feels [N].
+  [[nodiscard]] V force() const { return felt.wrench.force; }
+};
 
 /// Deformed surface with its displacement; lengths in metres.
 inline void write_vtp(const std::string& name, const palpate::MeshData<S>& rest, const Frame& frame) {
