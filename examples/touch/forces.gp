@@ -8,7 +8,7 @@ set grid lc rgb '#dddddd'
 set key outside right top samplen 1.5
 set xrange [0:*]
 set format x ''
-set ylabel 'force on the tool [N]'
+set ylabel 'normal force [N]'
 data = folder.'/forces.csv'
 plot data using 1:5 with lines lw 1.6 lc rgb '#c0392b' title 'F_x', \
      data using 1:6 with lines lw 1.6 lc rgb '#1f618d' title 'F_y', \

@@ -45,8 +45,8 @@ inline constexpr const char* usage =
 
   (no option)     a mallet moves along an ellipsoid of silicone rubber; its response field gives the force
                   and the shape
-  --paper         the model of the paper: its force law, and a beam skeleton for the shape. Alone: all
-                  scenes of its figures 10 to 12
+  --paper         the model of the paper: its force law, and a beam skeleton for the shape. Alone, to
+                  examples/run: --scene all
 
   --object NAME   ellipsoid (default), sphere, box, cube, cylinder, superellipsoid, heart, or FILE.obj, .ply,
                   .stl
@@ -143,7 +143,6 @@ inline Options parse(int argc, char** argv) {
     else
       refuse("unknown option " + name);
   }
-  if (options.paper && argc == 2) options.scene = "all";
   return options;
 }
 

@@ -27,7 +27,7 @@ TEST_CASE("heart: closest point against all points of a fine mesh") {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(-1.3, 1.3);
   int inside = 0;
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 600; ++i) {
     const V x = 0.5 * (heart.lower() + heart.upper()) +
                 0.5 * (heart.upper() - heart.lower())
                           .cwiseProduct(V(uniform(random), uniform(random), uniform(random)));
