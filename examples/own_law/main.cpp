@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 
 /// @file Choosing policies, and writing one: a force law for tissue that is soft at first and stiff when
-/// compressed (Fung's exponential), decorated with damping and a cap, on a rounded box touched by a ball in
+/// compressed (Fung's exponential), decorated with damping and a cap, on a cylinder touched by a ball in
 /// up to four regions.
 
 #include <palpate/palpate.hpp>
@@ -31,11 +31,11 @@ static_assert(palpate::ForceLaw<FungForce>);
 int main() {
   using namespace palpate;
   using Law = DampedForce<SaturatedForce<FungForce>>;  // decorators are laws too
-  using Touch = ContactSolver<Superellipsoid<double>, Law, CoulombFriction<double>, Regions<4>>;
+  using Touch = ContactSolver<Cylinder<double>, Law, CoulombFriction<double>, Regions<4>>;
 
   const TriangleMesh<double> ball(Sphere<double>({.radius = 8e-3}).mesh(500));
   Touch touch({
-      .object = Superellipsoid<double>({.axes = {0.06, 0.03, 0.05}, .e1 = 0.5, .e2 = 0.5}),
+      .object = Cylinder<double>({.radius = 0.05, .half_height = 0.03}),
       .tool = ToolPoints<double>(ball, {.contact_area = 5e-5}),
       .force = Law(SaturatedForce<FungForce>({.A = 0.05, .B = 900}, {.limit = 3.0}), {.damping = 0.5}),
       .friction = CoulombFriction<double>({.mu_static = 0.4, .mu_dynamic = 0.3}),

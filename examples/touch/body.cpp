@@ -64,14 +64,12 @@ Body Body::of(std::string title, const Surface& surface, MeshData<S> display) {
   return body;
 }
 
-Ellipsoid<S> ellipsoid() { return Ellipsoid<S>({.axes = V(0.06, 0.04, 0.04)}); }
-
 Body make_body(const Options& options) {
   const std::string& name = options.object;
   const auto exact = [&](const auto& surface) {
     return Body::of(name, surface, surface.mesh(display_vertices));
   };
-  if (name == "ellipsoid") return exact(ellipsoid());
+  if (name == "ellipsoid") return exact(Ellipsoid<S>({.axes = V(0.06, 0.04, 0.04)}));
   if (name == "sphere") return exact(Sphere<S>({.radius = 0.05}));
   if (name == "box") return exact(Box<S>({.half = V(0.05, 0.04, 0.05)}));
   if (name == "cube") return exact(Box<S>({.half = V(0.05, 0.05, 0.05)}));

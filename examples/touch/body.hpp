@@ -2,7 +2,7 @@
 #pragma once
 
 /// @file The elastic object of the command line: a body whose type is known at run time only. Set-up asks it
-/// through virtual functions; the servo loop has samples of it, or the ellipsoid itself.
+/// through virtual functions; the servo loop has samples of it.
 
 #include <palpate/geometry/extremal_points.hpp>
 
@@ -63,8 +63,5 @@ class Body {
 /// What options.object names: an exact surface, the heart, or a mesh file, the middle of whose box becomes the
 /// origin.
 [[nodiscard]] Body make_body(const Options& options);
-
-/// The ellipsoid, which the servo loop asks without samples.
-[[nodiscard]] palpate::Ellipsoid<S> ellipsoid();
 
 }  // namespace touch

@@ -40,12 +40,6 @@ class Feel {
   [[nodiscard]] virtual S highest_bulge() const noexcept { return 0; }
 };
 
-// One file each: a solver takes long to compile.
-/// The body's samples, a hundredth of its size apart.
-[[nodiscard]] std::unique_ptr<Feel> feel_samples(const Options&, const Body&, const Tool&, Answer);
-/// The same on the shape of the last tick.
-[[nodiscard]] std::unique_ptr<Feel> feel_deformed(const Options&, const Body&, const Tool&, Answer);
-/// The exact ellipsoid.
-[[nodiscard]] std::unique_ptr<Feel> feel_ellipsoid(const Options&, const Body&, const Tool&, Answer);
+[[nodiscard]] std::unique_ptr<Feel> make_feel(const Options&, const Body&, const Tool&, Answer);
 
 }  // namespace touch

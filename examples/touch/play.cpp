@@ -83,12 +83,6 @@ class Pictured {
   double seconds_ = 0;
 };
 
-std::unique_ptr<Feel> make_feel(const Options& options, const Body& body, const Tool& tool, Answer answer) {
-  if (options.deformed) return feel_deformed(options, body, tool, std::move(answer));
-  if (options.object == "ellipsoid") return feel_ellipsoid(options, body, tool, std::move(answer));
-  return feel_samples(options, body, tool, std::move(answer));
-}
-
 }  // namespace
 
 int play(Options options) {
