@@ -6,6 +6,7 @@
 #include <palpate/geometry/cylinder.hpp>
 #include <palpate/geometry/sphere.hpp>
 #include <palpate/geometry/superellipsoid.hpp>
+#include <palpate/geometry/triangle_mesh.hpp>
 
 #include <cmath>
 
