@@ -55,21 +55,44 @@ template <Real S>
   return slot;
 }
 
+/// What an interpolation sees of a body. A type of the scalar only, so that the checks are compiled once for all
+/// bodies. Corners and contact are vertices of their own, so that the field there can be read.
+template <Real S>
+struct InterpolationBody {
+  template <class Body>
+  InterpolationBody(const Body& body)
+      : points(extremal_points(body)), mesh(with_corners(body)), partition(make_partition(body, mesh)) {
+    for (const Vec3<S>& v : mesh.vertices) normals.push_back(shading_normal(body, v));
+  }
+
+  std::vector<ExtremalPoint<S>> points;
+  std::uint32_t at_corner = 0, at_contact = 0;  // vertices: the first corner, the contact
+  MeshData<S> mesh;
+  FacePartition<S> partition;
+  std::vector<Vec3<S>> normals;  // of the mesh's vertices
+
+ private:
+  template <class Body>
+  MeshData<S> with_corners(const Body& body) {
+    MeshData<S> m = body.mesh(400);
+    at_corner = static_cast<std::uint32_t>(m.vertices.size());
+    for (const auto& point : points) m.vertices.push_back(point.position);
+    at_contact = static_cast<std::uint32_t>(m.vertices.size());
+    const Vec3<S> size = body.upper() - body.lower();
+    m.vertices.push_back(
+        body.closest(body.lower() + Vec3<S>(S(0.8), S(0.95), S(0.7)).cwiseProduct(size)).position);
+    return m;
+  }
+};
+
 /// `Make` is a callable FacePartition<S> -> interpolation. `tolerance` in units of the max displacement.
-template <class Body, class Make>
-void check_interpolation(const Body& body, const Make& make, long double tolerance) {
-  using S = typename Body::Scalar;
-  MeshData<S> mesh = body.mesh(400);
-  const auto points = extremal_points(body);
-  // Corners and contact are vertices of their own, so that the field there can be read.
-  const auto at_corner = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (const auto& point : points) mesh.vertices.push_back(point.position);
-  const Vec3<S> position =
-      body.closest(body.lower() + Vec3<S>(S(0.8), S(0.95), S(0.7)).cwiseProduct(body.upper() - body.lower()))
-          .position;
-  const auto at_contact = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.push_back(position);
-  const auto interpolation = make(make_partition(body, mesh));
+template <Real S, class Make>
+void check_interpolation(const InterpolationBody<S>& body, const Make& make, long double tolerance) {
+  const MeshData<S>& mesh = body.mesh;
+  const auto& points = body.points;
+  const std::uint32_t at_corner = body.at_corner, at_contact = body.at_contact;
+  const Vec3<S> position = mesh.vertices[at_contact];
+  const auto interpolation = make(body.partition);
   using I = std::remove_cvref_t<decltype(interpolation)>;
   const auto& partition = interpolation.partition();
 
@@ -82,7 +105,7 @@ void check_interpolation(const Body& body, const Make& make, long double toleran
   std::vector<Vec3<S>> corners(points.size()), still(points.size(), Vec3<S>::Zero());
   for (auto& u : corners) u = vector(1e-3);
   ContactDisplacement<S> contact{
-      .position = position, .normal = shading_normal(body, position), .displacement = vector(4e-3)};
+      .position = position, .normal = body.normals[at_contact], .displacement = vector(4e-3)};
   const S max_size = S(4e-3);
   const auto field = field_of(interpolation, corners, contact);
 
@@ -151,7 +174,7 @@ void check_interpolation(const Body& body, const Make& make, long double toleran
   std::vector<Vec3<S>> normals;
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     turned.vertices[i] = turn * mesh.vertices[i];
-    normals.push_back(turn * shading_normal(body, mesh.vertices[i]));
+    normals.push_back(turn * body.normals[i]);
   }
   auto turned_points = points;
   for (auto& point : turned_points) point = {turn * point.position, turn * point.normal};

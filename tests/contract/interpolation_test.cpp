@@ -10,6 +10,7 @@
 
 using namespace palpate;
 using palpate::test::check_interpolation;
+using palpate::test::InterpolationBody;
 using palpate::test::ulps;
 
 namespace {
@@ -38,16 +39,15 @@ class QuadraticBlocks : public InterpolationBlocks<Quadratic<S>> {
 
 template <template <class> class I, class S>
 void check_on_all_bodies(long double tolerance) {
-  const auto make = [](const FacePartition<S>& partition) { return I<S>(partition); };
-  SUBCASE("sphere") { check_interpolation(Sphere<S>({.radius = S(0.03)}), make, tolerance); }
-  SUBCASE("ellipsoid") {
-    check_interpolation(Ellipsoid<S>({.axes = {S(0.03), S(0.02), S(0.025)}}), make, tolerance);
-  }
-  SUBCASE("box") { check_interpolation(Box<S>(typename Box<S>::Params{}), make, tolerance); }
-  SUBCASE("cylinder") { check_interpolation(Cylinder<S>(typename Cylinder<S>::Params{}), make, tolerance); }
-  SUBCASE("superellipsoid") {
-    check_interpolation(Superellipsoid<S>(typename Superellipsoid<S>::Params{}), make, tolerance);
-  }
+  const auto check = [&](const InterpolationBody<S>& body) {
+    check_interpolation(
+        body, [](const FacePartition<S>& partition) { return I<S>(partition); }, tolerance);
+  };
+  SUBCASE("sphere") { check(Sphere<S>({.radius = S(0.03)})); }
+  SUBCASE("ellipsoid") { check(Ellipsoid<S>({.axes = {S(0.03), S(0.02), S(0.025)}})); }
+  SUBCASE("box") { check(Box<S>(typename Box<S>::Params{})); }
+  SUBCASE("cylinder") { check(Cylinder<S>(typename Cylinder<S>::Params{})); }
+  SUBCASE("superellipsoid") { check(Superellipsoid<S>(typename Superellipsoid<S>::Params{})); }
 }
 
 }  // namespace

@@ -9,6 +9,8 @@
 #include <palpate/geometry/concept.hpp>
 
 #include <algorithm>
+#include <functional>
+#include <memory>
 #include <random>
 #include <utility>
 #include <vector>
@@ -19,19 +21,73 @@ constexpr std::uint64_t surface_seed = 20250711;
 
 using Long3 = Vec3<long double>;
 
+/// An exact surface of whatever type, so that the suite is compiled once for all of them.
+template <Real S>
+struct AnySurface {
+  virtual ~AnySurface() = default;
+  [[nodiscard]] virtual SurfacePoint<S> closest(const Vec3<S>& x) const = 0;
+  [[nodiscard]] virtual Penetration<S> penetration(const Vec3<S>& x) const = 0;
+  [[nodiscard]] virtual bool inside(const Vec3<S>& x) const = 0;
+  [[nodiscard]] virtual bool separated(const Vec3<S>& centre, S radius) const = 0;
+  [[nodiscard]] virtual RayHit<S> raycast(const Vec3<S>& origin, const Vec3<S>& direction) const = 0;
+  [[nodiscard]] virtual Curvature<S> curvature(const Vec3<S>& x) const = 0;
+  [[nodiscard]] virtual Vec3<S> point(S u, S v) const = 0;
+  [[nodiscard]] virtual MeshData<S> mesh(std::size_t vertices) const = 0;
+  [[nodiscard]] virtual Vec3<S> lower() const = 0;
+  [[nodiscard]] virtual Vec3<S> upper() const = 0;
+  [[nodiscard]] virtual S reach() const = 0;
+  [[nodiscard]] virtual S volume() const = 0;
+  /// Many points at once: false where the surface has no such function.
+  virtual bool penetration(const PointBatch<S>& x, PenetrationBatch<S>& out) const = 0;
+  virtual bool penetration(const PointBatch<S, 2 * batch_size>& x,
+                           PenetrationBatch<S, 2 * batch_size>& out) const = 0;
+};
+
+template <ParametricSurface Body, Real S = typename Body::Scalar>
+class Surface final : public AnySurface<S> {
+ public:
+  explicit Surface(Body body) : body_(std::move(body)) {}
+  SurfacePoint<S> closest(const Vec3<S>& x) const override { return body_.closest(x); }
+  Penetration<S> penetration(const Vec3<S>& x) const override { return body_.penetration(x); }
+  bool inside(const Vec3<S>& x) const override { return body_.inside(x); }
+  bool separated(const Vec3<S>& centre, S radius) const override { return body_.separated(centre, radius); }
+  RayHit<S> raycast(const Vec3<S>& origin, const Vec3<S>& direction) const override {
+    return body_.raycast(origin, direction);
+  }
+  Curvature<S> curvature(const Vec3<S>& x) const override { return body_.curvature(x); }
+  Vec3<S> point(S u, S v) const override { return body_.point(u, v); }
+  MeshData<S> mesh(std::size_t vertices) const override { return body_.mesh(vertices); }
+  Vec3<S> lower() const override { return body_.lower(); }
+  Vec3<S> upper() const override { return body_.upper(); }
+  S reach() const override { return body_.reach(); }
+  S volume() const override { return body_.volume(); }
+  bool penetration(const PointBatch<S>& x, PenetrationBatch<S>& out) const override {
+    if constexpr (HasPenetrationBatch<Body>) body_.penetration(x, out);
+    return HasPenetrationBatch<Body>;
+  }
+  bool penetration(const PointBatch<S, 2 * batch_size>& x,
+                   PenetrationBatch<S, 2 * batch_size>& out) const override {
+    if constexpr (HasPenetrationBatch<Body, 2 * batch_size>) body_.penetration(x, out);
+    return HasPenetrationBatch<Body, 2 * batch_size>;
+  }
+
+ private:
+  Body body_;
+};
+
 /// The suite. `make(scale)` builds the body with every length times `scale`, centre included; `gauge(x)` is
 /// independent of the code under test: 1 on the surface, below 1 inside, growing in proportion along rays
 /// from the centre, which is at `centre`. `area_ratio` is the stated evenness of the mesh.
-template <Real S, class Make, class Gauge>
+template <Real S>
 class SurfaceSuite {
  public:
-  using Body = std::invoke_result_t<Make, S>;
-  static_assert(ParametricSurface<Body>);
+  using Body = std::unique_ptr<const AnySurface<S>>;
 
-  SurfaceSuite(Make make, Gauge gauge, const Vec3<S>& centre, double area_ratio)
-      : make_(make),
-        body_(make(S(1))),
-        gauge_(gauge),
+  SurfaceSuite(std::function<Body(S)> make, std::function<long double(const Long3&)> gauge,
+               const Vec3<S>& centre, double area_ratio)
+      : make_(std::move(make)),
+        made_(make_(S(1))),
+        gauge_(std::move(gauge)),
         centre_(centre),
         area_ratio_(area_ratio),
         samples_(body_.mesh(1500)),
@@ -43,8 +99,8 @@ class SurfaceSuite {
     INFO("seed ", surface_seed, ", half sizes ", half_.x(), " ", half_.y(), " ", half_.z());
     closest();
     penetration();
-    if constexpr (HasPenetrationBatch<Body>) penetration_batch<batch_size>();
-    if constexpr (HasPenetrationBatch<Body, 2 * batch_size>) penetration_batch<2 * batch_size>();
+    penetration_batch<batch_size>();
+    penetration_batch<2 * batch_size>();
     continuity();
     separated();
     raycast();
@@ -157,7 +213,7 @@ class SurfaceSuite {
         x.x[i] = p.x(), x.y[i] = p.y(), x.z[i] = p.z();
       }
       PenetrationBatch<S, N> in;
-      body_.penetration(x, in);
+      if (!body_.penetration(x, in)) return;
       for (std::size_t i = 0; i < N; ++i) {
         const Penetration<S> one = body_.penetration(Vec3<S>(x.x[i], x.y[i], x.z[i]));
         // The same formula in another order: a few roundings of the coordinates.
@@ -362,7 +418,8 @@ class SurfaceSuite {
   // Lengths times a power of two: every result scales, to the bit.
   void units() {
     const S k = S(1024);
-    const Body large = make_(k);
+    const Body made = make_(k);
+    const AnySurface<S>& large = *made;
     CHECK(large.reach() == k * body_.reach());
     for (int i = 0; i < 50; ++i) {
       const Vec3<S> x = within(S(1.3));
@@ -403,9 +460,10 @@ class SurfaceSuite {
     CHECK(body_.separated(huge, S(1)));
   }
 
-  Make make_;
-  Body body_;
-  Gauge gauge_;
+  std::function<Body(S)> make_;
+  Body made_;
+  const AnySurface<S>& body_ = *made_;
+  std::function<long double(const Long3&)> gauge_;
   Vec3<S> centre_;
   double area_ratio_;
   MeshData<S> samples_;

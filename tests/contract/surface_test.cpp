@@ -14,9 +14,12 @@ using test::Long3;
 
 namespace {
 
-template <Real S, class Make, class Gauge>
-void run(Make make, Gauge gauge, const Vec3<S>& centre, double area_ratio) {
-  test::SurfaceSuite<S, Make, Gauge>(make, gauge, centre, area_ratio).run();
+template <Real S, class Make>
+void run(Make make, std::function<long double(const Long3&)> gauge, const Vec3<S>& centre,
+         double area_ratio) {
+  using Body = std::invoke_result_t<Make, S>;
+  const auto made = [make](S scale) { return std::make_unique<const test::Surface<Body>>(make(scale)); };
+  test::SurfaceSuite<S>(made, std::move(gauge), centre, area_ratio).run();
 }
 
 template <Real S>
