@@ -32,6 +32,7 @@
 // contact (II, III, IV.C): touching points to regions
 #include <palpate/contact/contact_state.hpp>
 #include <palpate/contact/topology.hpp>
+#include <palpate/contact/coupling.hpp>
 
 // law (IV): displacement to force, stick or slip, laws that vary over the object
 #include <palpate/law/force/concept.hpp>

@@ -26,10 +26,13 @@ struct ContactState {
   Vec3<S> friction;      ///< F_ct on the tool [N]
   S normal_force;        ///< F_cn [N]
   S area;                ///< that carries the force (RegionSum::area) [m^2]; 0 for a single point
-  S depth;  ///< of the deepest point: in the body, or below p0's tangent plane where that is more [m]
+  S depth;        ///< of the deepest point: in the body, or below p0's tangent plane where that is more [m]
+  S dent = S(0);  ///< part of D_n that is the other regions' dents beneath it (VI) [m]
 
   /// p0 up to the surface's curvature [m]; the surface point closest to it is p0.
   [[nodiscard]] Vec3<S> origin() const noexcept { return centre - displacement; }
+  /// D less the others' dents [m]: for models that add up what single contacts displace.
+  [[nodiscard]] Vec3<S> own_displacement() const noexcept { return displacement + dent * normal; }
 };
 
 }  // namespace palpate

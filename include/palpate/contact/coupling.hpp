@@ -3,27 +3,30 @@
 
 /// @file What contact regions do to each other's force (section VI).
 ///
-/// | shipped              | F_S of a region                                    | use it when             |
-/// |----------------------|----------------------------------------------------|-------------------------|
-/// | `IndependentRegions` | its own force                                      | absent, the default     |
-/// | `RegionSkeletons`    | + the stress forces that the others' beams pass on | regions feel each other |
+/// | shipped              | F_S of a region                      | use it when                            |
+/// |----------------------|--------------------------------------|----------------------------------------|
+/// | `CompliantRegions`   | less where others have dented        | the default with a deformation model   |
+/// | `IndependentRegions` | its own force                        | absent; the default without one        |
+/// | `RegionSkeletons`    | + what the others' beams transmit    | comparing with the paper               |
 ///
-/// The forces of independent regions have a potential. The stress forces have none (docs/beams.md), so
-/// friction's promise of passivity is for independent regions only.
+/// Independent and compliant regions have a potential, so that friction's promise of passivity holds. The
+/// stress forces of beams have none (docs/beams.md); the solver bounds each by the region's own force, so
+/// that none pulls, and says so (`Status::stress_bounded`).
 
+#include <palpate/contact/compliant_regions.hpp>
 #include <palpate/core/absent.hpp>
 #include <palpate/core/vector.hpp>
 
 #include <concepts>
 #include <cstddef>
 #include <span>
+#include <type_traits>
 
 namespace palpate {
 
 /// No region feels another.
 struct IndependentRegions {
   static constexpr bool active = false;
-  struct Result {};
 };
 
 /// A region as the coupling sees it: `{p0, -F_c, D, F_cn}`, [m], [N], [m], [N].
@@ -48,7 +51,15 @@ concept HasShare =
     };
 
 namespace detail {
-/// Checked instead of a coupling that is absent.
+template <class C>
+inline constexpr bool is_compliant_regions = false;
+template <ComplianceRatio R>
+inline constexpr bool is_compliant_regions<CompliantRegions<R>> = true;
+/// A coupling that adds forces to those of the regions.
+template <class C>
+concept PassesForces = C::active && !is_compliant_regions<C>;
+
+/// Checked instead of a coupling that passes no forces.
 template <class S>
 struct NoCoupling {
   struct Contact {
@@ -61,33 +72,31 @@ struct NoCoupling {
   void share(std::span<const Contact>, Result&) const noexcept;
 };
 template <class C, class S>
-using CheckedCoupling = ActiveOrT<C, NoCoupling<S>>;
+struct CheckedCouplingOf {
+  using type = NoCoupling<S>;
+};
+template <PassesForces C, class S>
+struct CheckedCouplingOf<C, S> {
+  using type = C;
+};
+template <class C, class S>
+using CheckedCoupling = typename CheckedCouplingOf<C, S>::type;
 }  // namespace detail
 
-/// A coupling is absent when `active` is false; then an empty `Result` is all that is asked of it.
+/// A coupling is absent when `active` is false; then nothing else is asked of it, nor of `CompliantRegions`,
+/// which the solver knows.
 template <class C, class S>
 concept RegionForceCoupling =
-    std::copyable<C> && HasActive<C> && std::default_initializable<typename C::Result> &&
-    HasContact<detail::CheckedCoupling<C, S>, S> && HasFromOthers<detail::CheckedCoupling<C, S>, S> &&
-    HasShare<detail::CheckedCoupling<C, S>>;
+    std::copyable<C> && HasActive<C> && HasContact<detail::CheckedCoupling<C, S>, S> &&
+    HasFromOthers<detail::CheckedCoupling<C, S>, S> && HasShare<detail::CheckedCoupling<C, S>>;
 
-namespace detail {
+/// Where a deformation model draws what regions do to each other, they feel it.
 template <class Deformation>
-struct CouplingOf {
-  using type = IndependentRegions;
-};
-template <class Deformation>
-  requires requires { typename Deformation::Coupling; }
-struct CouplingOf<Deformation> {
-  using type = typename Deformation::Coupling;
-};
-}  // namespace detail
-
-/// What a deformation model says of the forces between regions, `Deformation::Coupling`; else none.
-template <class Deformation>
-using DefaultCoupling = typename detail::CouplingOf<Deformation>::type;
+using DefaultCoupling = std::conditional_t<Deformation::active, CompliantRegions<>, IndependentRegions>;
 
 static_assert(RegionForceCoupling<IndependentRegions, float> &&
-              RegionForceCoupling<IndependentRegions, double>);
+              RegionForceCoupling<IndependentRegions, double> &&
+              RegionForceCoupling<CompliantRegions<>, float> &&
+              RegionForceCoupling<CompliantRegions<>, double>);
 
 }  // namespace palpate

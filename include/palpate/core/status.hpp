@@ -19,6 +19,7 @@ enum class Status : std::uint32_t {
   beyond_stable = 1u << 6,    ///< past the force law's stable branch: the force is held at its maximum
   non_finite_result = 1u << 7,  ///< a law gave NaN or infinity: the wrench is zero
   held_back = 1u << 8,  ///< the tool would have gone through: it is kept on the side it came from (SweptPose)
+  stress_bounded = 1u << 9,  ///< other regions' beams would have pulled: their stress force is bounded
 };
 
 [[nodiscard]] constexpr Status operator|(Status a, Status b) noexcept {

@@ -123,11 +123,12 @@ class BeamSkeletonDeformation {
     return true;
   }
   [[nodiscard]] static SkeletonContact<S> loaded(const ContactState<S>& c) noexcept {
-    return {c.origin(), -c.force, c.displacement, c.normal_force};
+    return {c.origin(), -c.force, c.own_displacement(), c.normal_force};
   }
   [[nodiscard]] static ContactDisplacement<D> shown(const ContactState<S>& c) noexcept {
-    return {c.origin().template cast<D>(), c.normal.template cast<D>(), c.displacement.template cast<D>(),
-            static_cast<D>(c.area),        static_cast<D>(c.points),    static_cast<D>(c.depth)};
+    return {
+        c.origin().template cast<D>(), c.normal.template cast<D>(), c.own_displacement().template cast<D>(),
+        static_cast<D>(c.area),        static_cast<D>(c.points),    static_cast<D>(c.depth - c.dent)};
   }
 
   Params p_;

@@ -22,6 +22,7 @@
 #include <palpate/solver/tick_result.hpp>
 #include <palpate/solver/detail/gather.hpp>
 #include <palpate/solver/detail/inherit.hpp>
+#include <palpate/solver/detail/stress_forces.hpp>
 // clang-format on
 
 #include <algorithm>
@@ -111,9 +112,9 @@ class ContactSolver {
 
    private:
     friend class ContactSolver;
-    explicit State(typename Collector<Contacts, S>::State regions) : regions_(std::move(regions)) {}
+    explicit State(typename Collector<Contacts, S, Coupling>::State regions) : regions_(std::move(regions)) {}
 
-    typename Collector<Contacts, S>::State regions_;
+    typename Collector<Contacts, S, Coupling>::State regions_;
     Last last_{};
     PALPATE_NO_UNIQUE_ADDRESS
     Present<std::array<detail::FrictionMemory<S>, max_regions>, 0, has_friction> memory_{};
@@ -128,7 +129,7 @@ class ContactSolver {
         friction_(std::move(parts.friction)),
         deformation_(std::move(parts.deformation)),
         coupling_(std::move(parts.coupling)),
-        collector_(parts.contacts, tool_),
+        collector_(parts.contacts, tool_, coupling_),
         state_(initial_state()) {}
 
   /// One tick with the tool at X (tool to object coordinates).
@@ -230,8 +231,9 @@ class ContactSolver {
   [[nodiscard]] const Deformation& deformation() const noexcept { return deformation_; }
 
  private:
-  using Sum = typename Collector<Contacts, S>::template Sum<Force>;
+  using Sum = typename Collector<Contacts, S, Coupling>::template Sum<Force>;
   using Sums = std::array<Sum, max_regions>;
+  static constexpr bool is_relieved = std::same_as<Sum, detail::RelievedSum<S>>;
 
   TickResult<S> step(const Pose<S>& X, [[maybe_unused]] S dt, Status status, State& state) const noexcept {
     // The second tick at a pose settles what the motion into it left (slip, rate); after that nothing
@@ -270,7 +272,8 @@ class ContactSolver {
     for (std::size_t k = 0; k < max_regions; ++k) {
       if (state.regions_.slot(k).active) press(k, sums[k], X, dt, state, result.wrench);
     }
-    if constexpr (Coupling::active) couple(X, state, result.wrench);
+    if constexpr (detail::PassesForces<Coupling>)
+      detail::pass_on<Acting>(coupling_, Vec3<S>(X * centre_of_mass()), state.contacts_, result);
     return result;
   }
 
@@ -296,6 +299,10 @@ class ContactSolver {
     ContactState<S> contact{slot.id,         sum.points, ContactMode::frictionless, sum.centre(), normal,
                             -depth * normal, sum.force,  Vec3<S>::Zero(),           normal_force, sum.area(),
                             sum.deepest};
+    if constexpr (is_relieved) {
+      contact.dent = equivalent_depth(sum, sum.full_normal_force()) - depth;
+      contact.displacement -= contact.dent * normal;
+    }
     if constexpr (has_friction) {
       detail::FrictionMemory<S>& memory = state.memory_[k];
       if (slot.merged == 0 && slot.parent == RegionSlot::none) {
@@ -321,29 +328,10 @@ class ContactSolver {
     contact.depth = sum.depth_below(contact.origin(), normal);
     wrench.force += contact.force;
     if constexpr (std::same_as<Acting, AtContact>) wrench.torque += sum.torque;
+    if constexpr (is_relieved) {
+      if (!(sum.magnitude > S(0)) && sum.full > S(0)) return;  // within another's dent: it does not touch
+    }
     state.contacts_.push_back(contact);
-  }
-
-  /// Section VI: adds to each region's force what the other regions pass on through the body.
-  void couple(const Pose<S>& X, State& state, Wrench<S>& wrench) const noexcept
-    requires(Coupling::active)
-  {
-    auto& contacts = state.contacts_;
-    if (contacts.size() < 2) return;
-    std::array<typename Coupling::Contact, max_regions> loaded;
-    for (std::size_t j = 0; j < contacts.size(); ++j) {
-      const ContactState<S>& c = contacts[j];
-      loaded[j] = {c.origin(), -c.force, c.displacement, c.normal_force};
-    }
-    typename Coupling::Result passed_on;
-    coupling_.share({loaded.data(), contacts.size()}, passed_on);
-    for (std::size_t j = 0; j < passed_on.from_others.size(); ++j) {
-      const Vec3<S>& f = passed_on.from_others[j];
-      contacts[j].force += f;
-      wrench.force += f;
-      if constexpr (std::same_as<Acting, AtContact>)
-        wrench.torque += (contacts[j].centre - X * centre_of_mass()).cross(f);
-    }
   }
 
   /// D_n of the point contact with the same force (IV.C); a single point is its own.
@@ -361,7 +349,7 @@ class ContactSolver {
   PALPATE_NO_UNIQUE_ADDRESS Friction friction_;
   PALPATE_NO_UNIQUE_ADDRESS Deformation deformation_;
   PALPATE_NO_UNIQUE_ADDRESS Coupling coupling_;
-  Collector<Contacts, S> collector_;
+  Collector<Contacts, S, Coupling> collector_;
   State state_;
 };
 

@@ -157,6 +157,13 @@ struct Relief {  // a coupling: each region is relieved by a part of what the ot
 // [extending]
 
 // [extending]
+struct SkinOnBone {  // a compliance ratio: a layer on a hard base sinks only near where it is pressed
+  double thickness;  // m
+  double ratio(double r, double) const noexcept { return std::exp(-r / thickness); }
+};
+// [extending]
+
+// [extending]
 struct NearOrigin {  // a host's tree: the mesh lies within `radius` of the origin, more is not known
   double radius;     // m
   bool touches(const V& centre, double r) const noexcept { return centre.norm() <= radius + r; }
@@ -193,6 +200,18 @@ TEST_CASE("a solver of the user's policies alone: two pins slide, each region fe
   CHECK_RELATIVE(felt.wrench.force.y(), 0.9 * 2 * up, 1e-12);  // a sum of four
   CHECK_RELATIVE(felt.wrench.force.x(), -left, 1e-12);
   CHECK(solver.contacts()[0].mode == ContactMode::sliding);
+}
+
+TEST_CASE("the user's compliance ratio: two pins relieve each other by it") {
+  using Skin = ContactSolver<Ground, Spring, Rubber, Regions<8, AreaSharing>, NoDeformation<double>, AtContact,
+                             CompliantRegions<SkinOnBone>>;
+  Skin solver({.object = {},
+               .tool = pins(),
+               .force = {100},
+               .friction = {.mu = 0.3},
+               .contacts = {.distance = 1e-3},
+               .coupling = {SkinOnBone{0.01}}});
+  CHECK_RELATIVE(solver.tick(at(0, -1e-3)).wrench.force.y(), 2 * 0.1 / (1 + std::exp(-1)), 1e-12);
 }
 
 TEST_CASE("the user's skew rule: stuck, it is softer across than along") {

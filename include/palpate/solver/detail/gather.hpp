@@ -19,6 +19,7 @@
 #include <palpate/geometry/concept.hpp>
 #include <palpate/law/map/concept.hpp>
 #include <palpate/solver/detail/leaf_share.hpp>
+#include <palpate/solver/detail/relief.hpp>
 
 #include <algorithm>
 #include <array>
@@ -131,13 +132,14 @@ inline void for_each_touching_leaf(const ToolPoints<S>& tool, const Pose<S>& X, 
 }
 }  // namespace detail
 
-template <class Contacts, Real S>
+/// `Coupling` counts for topologies of several regions.
+template <class Contacts, Real S, class Coupling>
 class Collector;
 
-template <Real S>
-class Collector<SinglePoint, S> {
+template <Real S, class Coupling>
+class Collector<SinglePoint, S, Coupling> {
  public:
-  Collector(const SinglePoint&, const PointTool<S>&) noexcept {}
+  Collector(const SinglePoint&, const PointTool<S>&, const Coupling&) noexcept {}
 
   /// A map adds a force of its own, whose direction is another.
   template <ForceModel Force>
@@ -162,13 +164,13 @@ class Collector<SinglePoint, S> {
   }
 };
 
-template <MassSharing Sharing, Real S>
-class Collector<SingleRegion<Sharing>, S> {
+template <MassSharing Sharing, Real S, class Coupling>
+class Collector<SingleRegion<Sharing>, S, Coupling> {
  public:
   template <ForceModel>
   using Sum = RegionSum<S>;
 
-  Collector(const SingleRegion<Sharing>&, const ToolPoints<S>& tool) : leaves_(tool) {}
+  Collector(const SingleRegion<Sharing>&, const ToolPoints<S>& tool, const Coupling&) : leaves_(tool) {}
 
   using State = detail::OneRegion<S>;
   [[nodiscard]] State initial_state() const noexcept { return {}; }
@@ -194,8 +196,9 @@ class Collector<SingleRegion<Sharing>, S> {
   detail::Leaves<Sharing, S> leaves_;
 };
 
-template <std::size_t N, MassSharing Sharing, Real S>
-class Collector<Regions<N, Sharing>, S> {
+template <std::size_t N, MassSharing Sharing, Real S, class Coupling>
+class Collector<Regions<N, Sharing>, S, Coupling> {
+  using Relief = detail::Relief<Coupling, N, Sharing, S>;
   static constexpr std::uint32_t leaf_size = static_cast<std::uint32_t>(batch_size);
   /// Of the touching points [m]. A type of its own, so that the tracker is compiled once for all objects.
   struct Positions {
@@ -213,10 +216,13 @@ class Collector<Regions<N, Sharing>, S> {
 
  public:
   template <ForceModel>
-  using Sum = RegionSum<S>;
+  using Sum = typename Relief::Sum;
 
-  Collector(const Regions<N, Sharing>& regions, const ToolPoints<S>& tool)
-      : graph_(tool, static_cast<S>(regions.distance)), leaves_(tool), points_(tool.size()) {}
+  Collector(const Regions<N, Sharing>& regions, const ToolPoints<S>& tool, const Coupling& coupling)
+      : graph_(tool, static_cast<S>(regions.distance)),
+        leaves_(tool),
+        points_(tool.size()),
+        relief_(coupling, tool, graph_) {}
 
   /// The regions' identity, and the lists that a tick works in.
   class State {
@@ -266,7 +272,7 @@ class Collector<Regions<N, Sharing>, S> {
 
   template <ContactSurface Object, ForceModel Force>
   Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
-                 State& state, std::array<RegionSum<S>, N>& sums) const noexcept {
+                 State& state, std::array<Sum<Force>, N>& sums) const noexcept {
     std::size_t leaves = 0, count = 0;
     S deepest = S(0);
     detail::for_each_touching_leaf(
@@ -287,6 +293,8 @@ class Collector<Regions<N, Sharing>, S> {
                                           Positions{&tool, &X, state.point_.data()});
     if (count == 0) return Status::ok;
     if (state.tracker_.changed()) state.find_slots(leaves, count);
+    const auto relief =
+        relief_.relieve(tool, force, X, std::span<const Leaf>(state.leaf_.data(), leaves), leaves_);
     for (std::size_t slot = 0; slot < N; ++slot) {
       const std::uint64_t bit = std::uint64_t(1) << slot;
       if ((state.met_ & bit) == 0) continue;
@@ -297,16 +305,17 @@ class Collector<Regions<N, Sharing>, S> {
         // Placed anew: less work than to keep them, once other programs' data have taken the caches.
         const PointBatch<S>& x = leaves_.placed(tool, leaf.begin, X);
         if (leaf.slots == bit) {
-          leaves_.add(tool, leaf.begin, force, x, leaf.in, sum);
+          leaves_.add(tool, leaf.begin, force, x, leaf.in, sum, relief_.left(relief, leaf.begin));
           continue;
         }
         PenetrationBatch<S> own = leaf.in;
         for (std::uint32_t i = 0; i < leaf_size; ++i)
           own.depth[i] = leaf.slot[i] == slot ? own.depth[i] : S(0);
-        leaves_.add(tool, leaf.begin, force, x, own, sum);
+        leaves_.add(tool, leaf.begin, force, x, own, sum, relief_.left(relief, leaf.begin));
       }
-      sums[slot] = sum.total();
+      static_cast<RegionSum<S>&>(sums[slot]) = sum.total();
       sums[slot].scale(Sharing::norm(static_cast<S>(sums[slot].points)));
+      if constexpr (Relief::active) sums[slot].full = relief.full[slot];
       status |= state.keep_side(slot, X, sums[slot]);
     }
     return status | Status::contact | detail::depth_status(object, force, deepest);
@@ -316,6 +325,7 @@ class Collector<Regions<N, Sharing>, S> {
   ProximityGraph<S> graph_;
   detail::Leaves<Sharing, S> leaves_;
   std::size_t points_;
+  PALPATE_NO_UNIQUE_ADDRESS Relief relief_;
 };
 
 }  // namespace palpate

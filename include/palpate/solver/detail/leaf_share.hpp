@@ -25,6 +25,16 @@ template <Real S>
   return sum / static_cast<S>(x.x.size());
 }
 
+/// What is left of the forces of a leaf's points where nothing takes any of them off (relief.hpp): all.
+struct AllLeft {};
+/// Multiplies a leaf's forces by what is left of them.
+template <Real S>
+inline void leave(std::array<S, batch_size>& list, const std::array<S, batch_size>& left) noexcept {
+  for (std::size_t i = 0; i < batch_size; ++i) list[i] *= left[i];
+}
+template <Real S>
+inline void leave(std::array<S, batch_size>&, AllLeft) noexcept {}
+
 /// What a leaf's points weigh: m_i/m up to the sharing's norm [-], and 1/A_i [1/m^2].
 template <Real S>
 struct alignas(64) LeafShare {
@@ -58,11 +68,11 @@ class Leaves {
     return transformed(X, tool.batch(begin));
   }
 
-  /// Adds to `sum` the points of the leaf at `begin`, each with its share of the law's force; x: object
-  /// coordinates. A map's law is that at the leaf's middle, a point of the tool.
-  template <ForceModel Force>
+  /// Adds to `sum` the points of the leaf at `begin`, each with what is left of its share of the law's force;
+  /// x: object coordinates. A map's law is that at the leaf's middle, a point of the tool.
+  template <ForceModel Force, class Left = AllLeft>
   void add(const ToolPoints<S>&, std::uint32_t begin, const Force& force, const PointBatch<S>& x,
-           const PenetrationBatch<S>& in, Sum& sum) const noexcept {
+           const PenetrationBatch<S>& in, Sum& sum, const Left& left = {}) const noexcept {
     const LeafShare<S>& share = shares_[begin / batch_size];
     std::array<S, batch_size> f;
     using V = batch_group<S>;
@@ -75,16 +85,32 @@ class Leaves {
       const Vec3<S> middle = mean(x);
       const auto law = force.at(middle);
       Vec3<S> configurational = Vec3<S>::Zero();
+      std::array<S, batch_size> weight = share.weight;
+      leave(weight, left);
       for (std::size_t i = 0; i < batch_size; ++i) {
         f[i] = share.weight[i] * law.force(in.depth[i]);
-        configurational += share.weight[i] * law.configurational_force(in.depth[i]);
+        configurational += weight[i] * law.configurational_force(in.depth[i]);
       }
       sum.add(middle, configurational);
     } else {
       for (std::size_t i = 0; i < batch_size; ++i)
         f[i] = in.depth[i] > S(0) ? share.weight[i] * force.force(in.depth[i]) : S(0);
     }
+    leave(f, left);
     sum.add(x, in, f, share.per_area);
+  }
+
+  /// Energy [J] and |force| [N] of each point of the leaf alone, 0 outside.
+  template <ForceModel Force>
+  void alone(const ToolPoints<S>& tool, std::uint32_t begin, const Force& force, const Pose<S>& X,
+             const PenetrationBatch<S>& in, std::array<S, batch_size>& energy,
+             std::array<S, batch_size>& f) const noexcept {
+    const auto& law = law_at(force, Vec3<S>(X * mean(tool.batch(begin))));
+    const LeafShare<S>& share = shares_[begin / batch_size];
+    for (std::size_t i = 0; i < batch_size; ++i) {
+      energy[i] = in.depth[i] > S(0) ? share.weight[i] * law.energy(in.depth[i]) : S(0);
+      f[i] = in.depth[i] > S(0) ? share.weight[i] * law.force(in.depth[i]) : S(0);
+    }
   }
 
  private:
@@ -129,9 +155,9 @@ class Leaves<SurfacePressure, S> {
 
   /// As of the other sharings. The pressure of a map needs no force of its own: its integral over the part of
   /// the tool that is inside is a potential whatever the pressure depends on. The term of backs does.
-  template <ForceModel Force>
+  template <ForceModel Force, class Left = AllLeft>
   void add(const ToolPoints<S>& tool, std::uint32_t begin, const Force& force, const PointBatch<S>&,
-           const PenetrationBatch<S>& in, Sum& sum) const noexcept {
+           const PenetrationBatch<S>& in, Sum& sum, const Left& left = {}) const noexcept {
     const PressureShare<S>& share = shares_[begin / batch_size];
     const PointBatch<S>& x = tool.batch(begin);
     const Vec3<S> middle = ForceMap<Force> ? Vec3<S>(sum.pose() * mean(x)) : Vec3<S>::Zero();
@@ -147,18 +173,41 @@ class Leaves<SurfacePressure, S> {
       for (std::size_t i = 0; i < batch_size; ++i)
         p[i] = in.depth[i] > S(0) ? per_contact_area_ * law.force(in.depth[i]) : S(0);
     }
-    if (sum.add(x, in, share, p)) add_backs(law, middle, x, in, share, p, sum);
+    leave(p, left);
+    if (sum.add(x, in, share, p)) add_backs(law, middle, x, in, share, p, left, sum);
+  }
+
+  /// As of the other sharings: by the area projected on the push, less where a face looks out of the body.
+  /// The sum over a closed surface is the energy of its inside, on a flat body exactly.
+  template <ForceModel Force>
+  void alone(const ToolPoints<S>& tool, std::uint32_t begin, const Force& force, const Pose<S>& X,
+             const PenetrationBatch<S>& in, std::array<S, batch_size>& energy,
+             std::array<S, batch_size>& f) const noexcept {
+    const auto& law = law_at(force, Vec3<S>(X * mean(tool.batch(begin))));
+    const PressureShare<S>& share = shares_[begin / batch_size];
+    for (std::size_t i = 0; i < batch_size; ++i) {
+      energy[i] = f[i] = S(0);
+      if (!(in.depth[i] > S(0))) continue;
+      const Vec3<S> a = X.rotation * Vec3<S>(share.x[i], share.y[i], share.z[i]);
+      const S w = a.dot(Vec3<S>(in.gradient_x[i], in.gradient_y[i], in.gradient_z[i]));
+      const S t = (std::max)(w * share.per_area[i], S(0));
+      energy[i] = per_contact_area_ * law.energy(in.depth[i]) * (w * t * (S(2) - t) - w);
+      f[i] = per_contact_area_ * law.force(in.depth[i]) * (std::max)(-w, S(0));
+    }
   }
 
  private:
-  template <class Law>
+  template <class Law, class Left>
   void add_backs(const Law& law, const Vec3<S>& middle, const PointBatch<S>& x, const PenetrationBatch<S>& in,
-                 const PressureShare<S>& share, const std::array<S, batch_size>& p, Sum& sum) const noexcept {
+                 const PressureShare<S>& share, const std::array<S, batch_size>& p, const Left& left,
+                 Sum& sum) const noexcept {
     std::array<S, batch_size> energy;
     for (std::size_t i = 0; i < batch_size; ++i)
       energy[i] = p[i] > S(0) ? per_contact_area_ * law.energy(in.depth[i]) : S(0);
-    const std::array<S, batch_size> backs = sum.add_backs(x, in, share, p, energy);
+    leave(energy, left);
+    std::array<S, batch_size> backs = sum.add_backs(x, in, share, p, energy);
     if constexpr (requires { law.configurational_force(S(0)); }) {
+      leave(backs, left);
       Vec3<S> configurational = Vec3<S>::Zero();
       for (std::size_t i = 0; i < batch_size; ++i) {
         if (backs[i] > S(0))

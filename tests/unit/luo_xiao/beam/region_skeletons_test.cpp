@@ -18,7 +18,7 @@ using palpate::test::VecL;
 namespace {
 
 constexpr std::uint64_t seed = 20050610;
-constexpr double E = 0.9e6, volume = 5e-5;
+constexpr double E = 0.9e6, volume = 2.16e-4;  // of a cube of 60 mm
 
 template <Real S, class G = CoupledRegions>
 using Several = RegionSkeletons<Skeleton<S>, G, 4>;
