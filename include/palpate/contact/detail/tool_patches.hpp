@@ -68,6 +68,7 @@ class ToolPatches {
  private:
   static constexpr const char* name = "CompliantRegions";
   static constexpr std::uint32_t nobody = (std::numeric_limits<std::uint32_t>::max)();
+  static constexpr double no_patch = (std::numeric_limits<double>::max)();
   // The least eigenvalue that R may have: rounding then stays below 1e-12.
   static constexpr double min_eigenvalue = 1e-3;
   // A round face of area A_0 is 2 a across, a square one 2.51 a.
@@ -103,14 +104,14 @@ class ToolPatches {
   std::vector<std::uint32_t> divide(const ToolPoints<S>& tool, const std::vector<std::uint32_t>& part,
                                     double a, bool cuts) {
     const std::size_t n = tool.size();
-    std::vector<double> distance(n, std::numeric_limits<double>::infinity());
+    std::vector<double> distance(n, no_patch);
     std::vector<std::uint32_t> seeds;
     of_.assign(n, 0);
     std::uint32_t next = 0;
     while (seeds.size() < max_patches) {
       const auto patch = static_cast<std::uint8_t>(seeds.size());
       seeds.push_back(next);
-      const bool is_new_part = !is_finite(distance[next]);
+      const bool is_new_part = distance[next] == no_patch;
       double reach = 0;
       for (std::uint32_t i = 0; i < n; ++i) {
         if (part[i] != part[next]) continue;
@@ -127,7 +128,7 @@ class ToolPatches {
       if (distance[next] <= a) break;
     }
     for (std::uint32_t i = 0; i < n; ++i) {  // parts that got no patch of their own
-      if (is_finite(distance[i])) continue;
+      if (distance[i] != no_patch) continue;
       const auto gap = [&](std::uint32_t seed) { return (tool.point(i) - tool.point(seed)).squaredNorm(); };
       of_[i] = static_cast<std::uint8_t>(
           std::min_element(seeds.begin(), seeds.end(),
