@@ -52,7 +52,7 @@ class DisplacementField {
       : p_(params),
         interpolation_(std::move(interpolation)),
         neighbourhood_(std::move(neighbourhood)),
-        local_(p_.contacts, mesh) {
+        local_(p_.contacts, mesh, interpolation_.partition()) {
     const FacePartition<S>& partition = interpolation_.partition();
     if (p_.contacts < 1) fail(name, "contacts must be >= 1", static_cast<double>(p_.contacts));
     if (mesh.vertices.size() != partition.size())
@@ -217,7 +217,7 @@ class DisplacementField {
     }
     if constexpr (N::active) {
       for (std::size_t c = 0; c < active_; ++c) {
-        if (!local_.touches(c, face)) continue;
+        if (!local_.touches(c, f, from)) continue;
         if (!is_moved) copy(rest, count, to);
         local_.apply(c, rest, count, to);
         is_moved = true;

@@ -27,9 +27,10 @@ struct LocalShape {
   S radius = 0;                      ///< R [m]; 0: nothing to do
   S reduced = 0;                     ///< printed: 1 - w
 
-  [[nodiscard]] bool touches(const Face<S>& face) const noexcept {
-    const S reach = radius + depth + face.radius;
-    return radius > S(0) && (position - face.centre).squaredNorm() < reach * reach;
+  /// Does it move anything in this ball [m]?
+  [[nodiscard]] bool touches(const Vec3<S>& centre, S ball) const noexcept {
+    const S reach = radius + depth + ball;
+    return radius > S(0) && (position - centre).squaredNorm() < reach * reach;
   }
 
   /// Moves positions `x` of `count` vertices, `rest` without deformation [m]: whole `simd_group`s.
@@ -73,7 +74,7 @@ class LocalShapes {
  public:
   using S = typename N::Scalar;
 
-  LocalShapes(std::size_t, const MeshData<S>&) noexcept {}
+  LocalShapes(std::size_t, const MeshData<S>&, const FacePartition<S>&) noexcept {}
   void reset() noexcept {}
   void swap() noexcept {}
   void leave_out(std::size_t) noexcept {}
@@ -81,7 +82,7 @@ class LocalShapes {
                                    std::span<const Vec3<S>> corners) noexcept {
     return corners;
   }
-  [[nodiscard]] bool touches(std::size_t, const Face<S>&) const noexcept { return false; }
+  [[nodiscard]] bool touches(std::size_t, std::size_t, std::size_t) const noexcept { return false; }
   [[nodiscard]] bool changed(std::size_t, const Face<S>&) const noexcept { return false; }
   PALPATE_INLINE void apply(std::size_t, const Lists<const S>&, std::size_t, const Lists<S>&) const noexcept {
   }
@@ -94,8 +95,22 @@ class LocalShapes<N> {
   using S = typename N::Scalar;
   static constexpr NeighbourhoodForm form = N::form;
 
-  LocalShapes(std::size_t contacts, const MeshData<S>& mesh)
-      : now_(contacts), before_(contacts), margin_(mean_edge(mesh) / S(2)) {}
+  LocalShapes(std::size_t contacts, const MeshData<S>& mesh, const FacePartition<S>& partition)
+      : now_(contacts), before_(contacts), margin_(mean_edge(mesh) / S(2)) {
+    for (const Face<S>& face : partition.faces()) {
+      first_block_.push_back(blocks_.size());
+      for (std::size_t from = 0; from < face.count; from += block_size) {
+        const Lists<const S> rest = partition.rest_from(face, from);
+        const std::size_t count = (std::min)(block_size, face.count - from);
+        const auto at = [&rest](std::size_t i) { return Vec3<S>(rest[0][i], rest[1][i], rest[2][i]); };
+        Ball ball;
+        for (std::size_t i = 0; i < count; ++i) ball.centre += at(i) / static_cast<S>(count);
+        for (std::size_t i = 0; i < count; ++i)
+          ball.radius = (std::max)(ball.radius, (at(i) - ball.centre).norm());
+        blocks_.push_back(ball);
+      }
+    }
+  }
 
   void reset() noexcept { std::fill(before_.begin(), before_.end(), Shape{}); }
   void swap() noexcept { now_.swap(before_); }
@@ -128,11 +143,14 @@ class LocalShapes<N> {
       return bounded(partition, contact, corners, (std::max)(shape.flat, shape.depth));
     }
   }
-  [[nodiscard]] bool touches(std::size_t c, const Face<S>& face) const noexcept {
-    return now_[c].touches(face);
+  /// Does it move anything in the block of face f that begins at its slot number `from`?
+  [[nodiscard]] bool touches(std::size_t c, std::size_t f, std::size_t from) const noexcept {
+    const Ball& block = blocks_[first_block_[f] + from / block_size];
+    return now_[c].touches(block.centre, block.radius);
   }
   [[nodiscard]] bool changed(std::size_t c, const Face<S>& face) const noexcept {
-    return now_[c] != before_[c] && (now_[c].touches(face) || before_[c].touches(face));
+    return now_[c] != before_[c] &&
+           (now_[c].touches(face.centre, face.radius) || before_[c].touches(face.centre, face.radius));
   }
   PALPATE_INLINE void apply(std::size_t c, const Lists<const S>& rest, std::size_t count,
                             const Lists<S>& x) const noexcept {
@@ -141,6 +159,10 @@ class LocalShapes<N> {
 
  private:
   using Shape = LocalShape<S, form>;
+  struct Ball {  // around the vertices of a block [m]
+    Vec3<S> centre = Vec3<S>::Zero();
+    S radius = 0;
+  };
 
   /// R is at least this part of a. Chosen: beyond it the wall around the contact would be as steep as a
   /// step to the eye.
@@ -176,6 +198,8 @@ class LocalShapes<N> {
   }
 
   std::vector<Shape> now_, before_;
+  std::vector<Ball> blocks_;
+  std::vector<std::size_t> first_block_;  // by face
   /// Half a mean edge of the display mesh [m]: a is so much wider, because triangles across the tool's rim
   /// would cut through it.
   S margin_;
