@@ -198,3 +198,20 @@ TEST_CASE("a tool pressed deeper than it is tall is not let go: the force rises 
     }
   }
 }
+
+TEST_CASE(
+    "where a flat face goes in by its edge, the pressure centre is a sixth of the width off the middle") {
+  const TriangleMesh<double> cube(Box<double>({.half = V::Constant(0.005)}).mesh(8));
+  const double angle = 0.02, width = 0.005;
+  Pressed<Flat> solver({.object = {},
+                        .tool = ToolPoints<double>(cube, {.contact_area = 1e-4}, 0.25e-3),
+                        .force = LinearForce<double>({.k = k}),
+                        .friction = {}});
+  const Pose<double> X = pressed(cube, width * std::sin(angle), angle, V::UnitZ());
+  (void)solver.tick(X);
+  const V edge = X * V(-0.005, -0.005, 0), centre = solver.contacts()[0].centre;
+  const double off_the_middle = width / 2 - std::abs(centre.x() - edge.x());
+  // Even pressure would be at the middle, one that falls to 0 at a third. The points are 1/20 of the width
+  // apart: their squares, 1/400, and the edge's wall, 2 % of the face in contact, at its end.
+  CHECK_RELATIVE(off_the_middle, width / 6, 0.05);
+}

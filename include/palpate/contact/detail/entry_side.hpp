@@ -18,8 +18,8 @@ namespace palpate::detail {
 /// where a tool grips a part from both sides (its jaws are further apart than they are deep, until the part
 /// is half as thick). Then `Status::beyond_reach` is reported, and
 ///
-/// - as long as the force has not dropped by half nor turned round, nothing else happens: a mallet whose
-///   corner is through is carried by the rest of its face;
+/// - as long as the force does not drop by half in a tick nor turn round, nothing else happens: a mallet
+///   whose corner is through is carried by the rest of its face;
 /// - then the wrench of the tick before stands, and fades out over a quarter of that depth of travel: it
 ///   cannot give back more than the way in has stored. From there on the region has no force until the tool
 ///   has left the object.
@@ -31,31 +31,28 @@ class EntrySide {
  public:
   /// Forgets: the region is new.
   void begin() noexcept {
-    past_middle_ = lost_ = false;
+    past_middle_ = seen_ = lost_ = false;
     depth_ = S(0);
   }
 
   /// Looks at this tick's sum, and changes it where the region is lost.
   template <class Sum>
   Status update(const Pose<S>& X, Sum& sum) noexcept {
-    if (lost_) return fade(X, sum);
+    if (lost_) [[unlikely]]
+      return fade(X, sum);
     const S along = exit_.dot(sum.exit);
-    if (depth_ > S(0) && along < S(0) && !past_middle_) [[unlikely]] {
-      const bool turned =
-          along * along > S(0.5) * exit_.squaredNorm() * sum.exit.squaredNorm();  // cos^2 of 135 degrees
-      past_middle_ = turned && (sum.position - position_).norm() < depth_ + sum.deepest;
-    }
-    if (past_middle_) [[unlikely]] {
-      if (!(along < S(0))) {
+    if (depth_ > S(0) && (along < S(0) || seen_)) [[unlikely]] {
+      if (turned(along, exit_, sum.exit) && (sum.position - position_).norm() < depth_ + sum.deepest)
+        past_middle_ = seen_ = true;
+      else if (along >= S(0))
         past_middle_ = false;  // it came back
-      } else {
-        const S carried = force_.dot(sum.force);
-        if (carried < S(0.5) * force_.squaredNorm()) {
-          lost_ = true;
-          share_ = S(1);
-          point_ = X.to_tool(position_);
-          return fade(X, sum);
-        }
+      const S carried = force_.dot(sum.force);
+      if ((past_middle_ && carried < S(0.5) * force_.squaredNorm()) ||
+          (seen_ && turned(carried, force_, sum.force))) {
+        lost_ = true;
+        share_ = S(1);
+        point_ = X.to_tool(position_);
+        return fade(X, sum);
       }
     }
     if (!past_middle_) {
@@ -69,6 +66,11 @@ class EntrySide {
   }
 
  private:
+  /// By more than 135 degrees, whose cosine is - sqrt(1/2); `product`: the dot product of the two.
+  [[nodiscard]] static bool turned(S product, const Vec3<S>& from, const Vec3<S>& to) noexcept {
+    return product < S(0) && product * product > S(0.5) * from.squaredNorm() * to.squaredNorm();
+  }
+
   template <class Sum>
   Status fade(const Pose<S>& X, Sum& sum) noexcept {
     const Vec3<S> now = X * point_;
@@ -83,7 +85,9 @@ class EntrySide {
   Vec3<S> point_;            // tool point whose travel fades the wrench [m]
   S depth_ = S(0);           // of the deepest point [m]
   S share_ = S(0);
-  bool past_middle_ = false, lost_ = false;
+  bool past_middle_ = false;  // now
+  bool seen_ = false;         // past the middle at some tick of this contact
+  bool lost_ = false;
 };
 
 }  // namespace palpate::detail
