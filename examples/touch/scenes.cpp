@@ -50,7 +50,7 @@ View scene_view(const Options& options, const Body& body) {
     return {.from = V(70, 150, 300), .at = V(0, 26, 0), .angle = 32, .per_newton = 20};
   if (scene == "cube-head" || scene == "cube-tail")
     return {.from = V(190, 200, 330), .at = V(12, 14, 0), .angle = 34};
-  if (scene == "heart") return {.from = V(70, 110, 330), .at = V(0, 27, 0), .angle = 33, .per_newton = 30};
+  if (scene == "heart") return {.from = V(70, 110, 330), .at = V(0, 22, 0), .angle = 36, .per_newton = 40};
   return view_of(body);
 }
 

@@ -9,6 +9,7 @@
 #include <palpate/geometry/triangle_mesh.hpp>
 
 #include <cmath>
+#include <numbers>
 
 namespace touch {
 
@@ -38,7 +39,7 @@ palpate::MeshData<S> spheres(const std::vector<V>& centres, S radius, std::size_
 Tool flat_face(S radius, S height, const V& centre_of_mass, std::vector<Rod> rods) {
   const S half = height / 2;
   return {standing(palpate::Cylinder<S>({.radius = radius, .half_height = half}).mesh(1500)),
-          S(3.14159265358979323846) * radius * radius, radius / 12, centre_of_mass, std::move(rods)};
+          std::numbers::pi * radius * radius, radius / 12, centre_of_mass, std::move(rods)};
 }
 
 }  // namespace
@@ -64,7 +65,7 @@ Tool make_tool(const Options& options) {
     const V one(0, radius, 0), two(compass_width, radius, 0), hinge(compass_width / 2, 60e-3, 0);
     const V through(0, 0, 5e-3);  // the bolt in the hinge
     return {spheres({one, two}, radius, 400),
-            5e-5,  // a whole pin's surface: it can sink in
+            std::numbers::pi * radius * radius,
             0.25e-3,
             hinge,
             {{one, hinge, 1.2e-3},
