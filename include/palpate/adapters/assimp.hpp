@@ -26,7 +26,7 @@ struct ReadMeshParams {
 };
 
 namespace detail {
-/// The vertex that stands for the place of a defect; none: past the last.
+/// The vertex that stands for the position of a defect; none: past the last.
 [[nodiscard]] inline std::size_t vertex_of(const MeshReport::Entry& e, MeshDefect d,
                                            const MeshData<double>& mesh) noexcept {
   using enum MeshDefect;

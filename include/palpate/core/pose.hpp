@@ -13,7 +13,7 @@ namespace palpate {
 template <Real S>
 struct Pose {
   Mat3<S> rotation = Mat3<S>::Identity();  ///< orthonormal, right-handed
-  Vec3<S> translation = Vec3<S>::Zero();   ///< place of the tool's origin [m]
+  Vec3<S> translation = Vec3<S>::Zero();   ///< position of the tool's origin [m]
 
   [[nodiscard]] Vec3<S> operator*(const Vec3<S>& p_T) const noexcept { return rotation * p_T + translation; }
   /// The inverse map, object to tool coordinates.

@@ -106,7 +106,7 @@ class HalfSpaceDeformation {
   using Simd = detail::simd_at_most<float, 8>;
 
   struct Contact {
-    V x, m, d;  // place, unit normal into the body, displacement [m]
+    V x, m, d;  // position, unit normal into the body, displacement [m]
     double a;
     [[nodiscard]] bool operator==(const Contact&) const noexcept = default;
   };
@@ -357,7 +357,7 @@ class HalfSpaceDeformation {
   std::vector<float> moves_;                     // 0 for a fixed vertex, else 1
   Profile profile_;
   MeshNormals normals_;
-  std::array<std::vector<float>, 3> now_;  // places [m]
+  std::array<std::vector<float>, 3> now_;  // positions [m]
   std::array<Contact, Capacity> contact_{};
   std::array<V, Capacity> force_{};
   Screw load_ = Screw::Zero(), motion_ = Screw::Zero();

@@ -77,9 +77,9 @@ inline void add_axis_ends(const B& body, std::vector<ExtremalPoint<S>>& points) 
   const Vec3<S> middle = (body.lower() + body.upper()) / S(2);
   for (int axis = 0; axis < 3; ++axis) {
     for (const bool high : {false, true}) {
-      Vec3<S> place = middle;
-      place[axis] = high ? body.upper()[axis] : body.lower()[axis];
-      points.push_back({place, high ? Vec3<S>(Vec3<S>::Unit(axis)) : Vec3<S>(-Vec3<S>::Unit(axis))});
+      Vec3<S> position = middle;
+      position[axis] = high ? body.upper()[axis] : body.lower()[axis];
+      points.push_back({position, high ? Vec3<S>(Vec3<S>::Unit(axis)) : Vec3<S>(-Vec3<S>::Unit(axis))});
     }
   }
 }
@@ -110,8 +110,8 @@ template <Real S>
 [[nodiscard]] inline std::vector<ExtremalPoint<S>> extremal_points(const Box<S>& body) {
   std::vector<ExtremalPoint<S>> points;
   for (unsigned number = 0; number < 8; ++number) {
-    const Vec3<S> place = detail::box_vertex(body, number);
-    points.push_back({place, shading_normal(body, place)});
+    const Vec3<S> position = detail::box_vertex(body, number);
+    points.push_back({position, shading_normal(body, position)});
   }
   return points;
 }
@@ -140,9 +140,9 @@ template <Real S>
   for (const S y : {body.lower().y(), body.upper().y()}) {
     for (const int axis : {0, 2}) {
       for (const S end : {body.lower()[axis], body.upper()[axis]}) {
-        Vec3<S> place(middle.x(), y, middle.z());
-        place[axis] = end;
-        points.push_back({place, shading_normal(body, place)});
+        Vec3<S> position(middle.x(), y, middle.z());
+        position[axis] = end;
+        points.push_back({position, shading_normal(body, position)});
       }
     }
   }
@@ -157,8 +157,8 @@ template <Real S>
   detail::add_axis_ends(body, points);
   const Vec3<S> middle = (body.lower() + body.upper()) / S(2);
   for (unsigned number = 0; number < 8; ++number) {
-    const Vec3<S> place = body.raycast(middle, detail::box_vertex(body, number) - middle).position;
-    points.push_back({place, shading_normal(body, place)});
+    const Vec3<S> position = body.raycast(middle, detail::box_vertex(body, number) - middle).position;
+    points.push_back({position, shading_normal(body, position)});
   }
   return points;
 }

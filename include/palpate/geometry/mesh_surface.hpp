@@ -349,9 +349,9 @@ class MeshSurface {
       if (hit.triangle != bvh_.none) half.push_back((hit.t + skip) / S(2));
     }
     if (half.empty()) return S(0);
-    const auto place = half.begin() + static_cast<std::ptrdiff_t>(half.size() / 20);
-    std::nth_element(half.begin(), place, half.end());
-    return *place;
+    const auto quantile = half.begin() + static_cast<std::ptrdiff_t>(half.size() / 20);
+    std::nth_element(half.begin(), quantile, half.end());
+    return *quantile;
   }
 
   S crease_;

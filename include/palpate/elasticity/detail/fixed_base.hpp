@@ -2,7 +2,7 @@
 #pragma once
 
 /// @file The fixed region of a body seen from afar: the half-space's field of its reaction, and the rigid
-/// motion that keeps it at rest. Set-up, and a few places per tick.
+/// motion that keeps it at rest. Set-up, and at a few positions per tick.
 
 #include <palpate/core/error.hpp>
 #include <palpate/elasticity/flat_punch.hpp>

@@ -74,8 +74,8 @@ class DistanceGrid {
   [[nodiscard]] Bounds at(const Vec3<S>& x) const noexcept {
     std::array<std::size_t, 3> n;
     for (std::size_t i = 0; i < 3; ++i) {
-      const S place = (x[static_cast<int>(i)] - low_[static_cast<int>(i)]) / width_;
-      n[i] = place > S(0) ? (std::min)(static_cast<std::size_t>(place), count_[i] - 1) : 0;
+      const S cell = (x[static_cast<int>(i)] - low_[static_cast<int>(i)]) / width_;
+      n[i] = cell > S(0) ? (std::min)(static_cast<std::size_t>(cell), count_[i] - 1) : 0;
     }
     const Cell& cell = cells_[(n[2] * count_[1] + n[1]) * count_[0] + n[0]];
     const S offset = (x - centre(n[0], n[1], n[2])).norm() + guard_, d = static_cast<S>(cell.distance);

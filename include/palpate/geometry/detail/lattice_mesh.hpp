@@ -70,7 +70,7 @@ template <Real S, class Map>
     return static_cast<std::uint32_t>(base + 2 * nx + ny + (ny - j));
   };
   // Exactly +-1 at the ends and exactly symmetric.
-  const auto place = [](std::size_t i, std::size_t cells) {
+  const auto coordinate = [](std::size_t i, std::size_t cells) {
     return (S(2) * static_cast<S>(i) - static_cast<S>(cells)) / static_cast<S>(cells);
   };
 
@@ -80,7 +80,7 @@ template <Real S, class Map>
     for (std::size_t j = 0; j <= ny; ++j) {
       const bool full = k == 0 || k == nz || j == 0 || j == ny;
       for (std::size_t i = 0; i <= nx; i += full ? 1 : nx)
-        mesh.vertices[index(i, j, k)] = map(Vec3<S>(place(i, nx), place(j, ny), place(k, nz)));
+        mesh.vertices[index(i, j, k)] = map(Vec3<S>(coordinate(i, nx), coordinate(j, ny), coordinate(k, nz)));
     }
   }
 

@@ -78,13 +78,13 @@ template <Real S>
   }
   std::vector<std::uint32_t> wrong;
   for (std::size_t p = 0; p < count; ++p) {
-    const Vec3<W> place = corner(parts.begin[p], 0);
+    const Vec3<W> point = corner(parts.begin[p], 0);
     W winding = 0;
     for (std::size_t q = 0; q < count; ++q) {
-      if (q == p || (place.array() < low[q].array()).any() || (place.array() > high[q].array()).any())
+      if (q == p || (point.array() < low[q].array()).any() || (point.array() > high[q].array()).any())
         continue;
       for (std::size_t i = parts.begin[q]; i < parts.begin[q + 1]; ++i)
-        winding += winding_share<W>(corner(i, 0) - place, corner(i, 1) - place, corner(i, 2) - place);
+        winding += winding_share<W>(corner(i, 0) - point, corner(i, 1) - point, corner(i, 2) - point);
     }
     const W expected = volume[p] > 0 ? W(0) : W(1);
     // The winding number is 1/2 where the vertex lies on the other part, which is no error: 0.75 is half way

@@ -73,16 +73,16 @@ class ShapeWriter {
     const float *at_x, *at_y, *at_z;  // at rest, by slot
     const std::uint32_t* vertex;
     VertexWriter<T> to;
-    VertexPositions* place;  // null: no normals
+    VertexPositions* positions;  // null: no normals
     SimdVec3<Simd4> low, high;
 
-    Put(const ResponseDisplay& display, const VertexBuffer<T>& out, VertexPositions* places) noexcept
+    Put(const ResponseDisplay& display, const VertexBuffer<T>& out, VertexPositions* buffer) noexcept
         : at_x(display.x()),
           at_y(display.y()),
           at_z(display.z()),
           vertex(display.vertex()),
           to(out.positions, out.position_stride),
-          place(places) {
+          positions(buffer) {
       const Simd far = (std::numeric_limits<float>::max)();
       low = {far, far, far};
       high = {-far, -far, -far};
@@ -91,8 +91,8 @@ class ShapeWriter {
       const SimdVec3<Simd4> at{Simd(at_x + slot) + u.x, Simd(at_y + slot) + u.y, Simd(at_z + slot) + u.z};
       low = {(min)(low.x, at.x), (min)(low.y, at.y), (min)(low.z, at.z)};
       high = {(max)(high.x, at.x), (max)(high.y, at.y), (max)(high.z, at.z)};
-      if (place != nullptr)
-        place->set_four(vertex + slot, at.x, at.y, at.z);
+      if (positions != nullptr)
+        positions->set_four(vertex + slot, at.x, at.y, at.z);
       else
         to.put_apart([this, slot](std::size_t k) { return vertex[slot + k]; }, at.x, at.y, at.z);
     }
