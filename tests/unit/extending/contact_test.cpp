@@ -50,6 +50,20 @@ struct Cushion : Spring {  // a force law with a rate term: F = k D (1 + c D'), 
 // [extending]
 
 // [extending]
+struct Clay : Spring {  // a force law with memory: beyond 1 N it gives way, and what it gave stays
+  struct State {
+    double set = 0;  // m
+  };
+  using Spring::force, Spring::stiffness, Spring::energy, Spring::depth;
+  State advance(const State& s, double D, double) const noexcept { return {(std::max)(s.set, D - 1 / k)}; }
+  double force(double D, const State& s) const noexcept { return force(D - s.set); }
+  double stiffness(double D, const State& s) const noexcept { return stiffness(D - s.set); }
+  double energy(double D, const State& s) const noexcept { return energy(D - s.set); }
+  double depth(double F, const State& s) const noexcept { return s.set + depth(F); }
+};
+// [extending]
+
+// [extending]
 struct Softer : Spring {  // a force law that takes several depths at once: V counts as a number does
   template <class Depths>
   Depths forces(const Depths& D) const noexcept {
@@ -227,6 +241,7 @@ TEST_CASE("the user's rate term, his law for several depths at once, and his map
   (void)cushion.tick(at(0, -1e-3), 1e-3);
   CHECK_RELATIVE(cushion.tick(at(0, -1.5e-3), 1e-3).wrench.force.y(), 0.15 * (1 + 2 * 0.5), 1e-12);
 
+  static_assert(StatefulForceLaw<Clay> && !StatefulForceLaw<Spring>);
   static_assert(HasForces<Softer, double> && !HasForces<Spring, double>);
   ContactSolver<Ground, Spring, Frictionless<double>, SingleRegion<AreaSharing>> one(
       {.object = {}, .tool = pins(), .force = {100}});

@@ -12,12 +12,18 @@
 /// | `TabulatedForce`    | monotone curve through data | measured or computed force-displacement curves     |
 /// | `SaturatedForce<L>` | min(L, limit), smooth       | decorator: caps what a law can ask of the device   |
 /// | `DampedForce<L>`    | L + rate term, eq. (1)      | decorator: the transient term; needs dt            |
+/// | `PlasticForce<L>`   | L(D - set), yields          | decorator: a dent that stays; has a state          |
+/// | `RelaxingForce<L>`  | L, less a Prony series      | decorator: relaxes and creeps; has a state         |
 ///
 /// Convention: depth D [m] > 0 is compression and force F [N] > 0 pushes the tool out; D <= 0 is no contact
-/// and gives exactly 0, and so does NaN, whatever the host's flags. Laws have no state, use no heap and no
-/// Eigen. Absent on purpose: adhesion, because the friction limits are those of F >= 0.
+/// and gives exactly 0, and so does NaN, whatever the host's flags. Laws use no heap and no Eigen; what a law
+/// remembers is a value that the solver keeps for each region. Absent on purpose: adhesion, because the
+/// friction limits are those of F >= 0.
 
 #include <palpate/core/scalar.hpp>
+
+#include <concepts>
+#include <type_traits>
 
 namespace palpate {
 
@@ -67,5 +73,48 @@ concept RateDependentForceLaw =
     ForceLaw<L> && requires(const L& law, typename L::Scalar depth, typename L::Scalar rate) {
       { law.force(depth, rate) } noexcept -> std::same_as<typename L::Scalar>;
     };
+
+template <class L>  // what a region remembers; L::State{} has never been touched
+concept HasState =
+    std::is_trivially_copyable_v<typename L::State> && std::default_initializable<typename L::State>;
+
+template <class L>  // the state dt [s] later, at the depth D [m] reached by then; D <= 0: out of contact
+concept HasAdvance =
+    requires(const L& law, const typename L::State& state, typename L::Scalar depth, typename L::Scalar dt) {
+      { law.advance(state, depth, dt) } noexcept -> std::same_as<typename L::State>;
+    };
+
+template <class L>  // F(D) [N] in this state
+concept HasStateForce = requires(const L& law, typename L::Scalar depth, const typename L::State& state) {
+  { law.force(depth, state) } noexcept -> std::same_as<typename L::Scalar>;
+};
+
+template <class L>  // dF/dD [N/m] at a constant state, the exact derivative of force()
+concept HasStateStiffness = requires(const L& law, typename L::Scalar depth, const typename L::State& state) {
+  { law.stiffness(depth, state) } noexcept -> std::same_as<typename L::Scalar>;
+};
+
+template <class L>  // free energy [J]: what the body could still give back
+concept HasStateEnergy = requires(const L& law, typename L::Scalar depth, const typename L::State& state) {
+  { law.energy(depth, state) } noexcept -> std::same_as<typename L::Scalar>;
+};
+
+template <class L>  // the inverse D(F) [m] in this state
+concept HasStateDepth = requires(const L& law, typename L::Scalar force, const typename L::State& state) {
+  { law.depth(force, state) } noexcept -> std::same_as<typename L::Scalar>;
+};
+
+template <class L>  // optional: how near [m] to where a contact ended a new one takes over its state
+concept HasExtent = requires(const L& law) {
+  { law.extent() } noexcept -> std::same_as<typename L::Scalar>;
+};
+
+/// A force law with memory. Its state is a value, one for each region, that `advance` takes over a tick, also
+/// while nothing touches; all else reads it. As a `ForceLaw`, without a state, it is the law of what was
+/// never touched. Over any path of D, F dD is at least what the free energy rises by: a law with memory only
+/// loses energy. Without `extent` the state ends with the contact.
+template <class L>
+concept StatefulForceLaw = ForceLaw<L> && HasState<L> && HasAdvance<L> && HasStateForce<L> &&
+                           HasStateStiffness<L> && HasStateEnergy<L> && HasStateDepth<L>;
 
 }  // namespace palpate

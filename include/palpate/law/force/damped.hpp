@@ -44,6 +44,8 @@ struct Viscous {
 /// (1), which belongs to the simulated tool; memory (creep, relaxation). Source: [luo2005] eq. (1).
 template <ForceLaw Law, class Form = HuntCrossley>
 class DampedForce {
+  static_assert(!StatefulForceLaw<Law>, "DampedForce would drop the law's state");
+
   using S = typename Law::Scalar;
 
  public:

@@ -34,6 +34,7 @@ template <ForceLaw Law>
 class SaturatedForce {
   static_assert(!RateDependentForceLaw<Law>,
                 "SaturatedForce would drop the rate term: write DampedForce<SaturatedForce<Law>> instead");
+  static_assert(!StatefulForceLaw<Law>, "SaturatedForce would drop the law's state: saturate inside");
 
   using S = typename Law::Scalar;
 
