@@ -7,11 +7,11 @@
 struct Glue {
   static constexpr bool shifts_by_travel = false;
 #ifndef PALPATE_MUST_FAIL
-  template <class Skew, class Friction, class Law>
-  static palpate::SlipResult<double> advance(const Friction&, const Law& law,
+  template <class Friction, class Skew, class Law>
+  static palpate::SlipResult<double> advance(const Friction&, const Skew& skew, const Law& law,
                                              const palpate::SlipTrial<double>& trial,
                                              palpate::SlipState<double>&) noexcept {
-    return {trial.stretch, Skew::force(law, trial.depth, trial.normal_force, trial.stretch)};
+    return {trial.stretch, skew.force(law, trial.depth, trial.normal_force, trial.stretch)};
   }
 #endif
 };

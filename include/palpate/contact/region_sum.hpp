@@ -107,6 +107,25 @@ struct RegionSum {
   }
 };
 
+/// A RegionSum that also has what laws with memory ask for, w_i = m_i/m being the points' weights.
+template <Real S>
+struct EnergySum : RegionSum<S> {
+  S energy = S(0);  ///< sum of w_i W(delta_i) [J]
+  S square = S(0);  ///< sum of w_i law(delta_i)^2 [N^2]
+
+  /// Of the points that carry the force, (sum |F_i|)^2 / sum (|F_i|^2/w_i) [-]: all of them where pressure is
+  /// even.
+  [[nodiscard]] S weight() const noexcept {
+    return square > S(0) ? this->magnitude * (this->magnitude / square) : S(0);
+  }
+  /// Multiplies every weight by `factor` [-].
+  void scale(S factor) noexcept {
+    RegionSum<S>::scale(factor);
+    energy *= factor;
+    square *= factor;
+  }
+};
+
 /// The RegionSum of a tool that is one point, set by one add(): the same to rounding, without roots and
 /// divisions.
 template <Real S>

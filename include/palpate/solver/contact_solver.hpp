@@ -20,9 +20,10 @@
 #include <palpate/contact/contact_state.hpp>
 #include <palpate/law/map/concept.hpp>
 #include <palpate/solver/tick_result.hpp>
+#include <palpate/solver/rate_window.hpp>
 #include <palpate/solver/detail/gather.hpp>
-#include <palpate/solver/detail/inherit.hpp>
 #include <palpate/solver/detail/stress_forces.hpp>
+#include <palpate/solver/detail/tick_memory.hpp>
 // clang-format on
 
 #include <algorithm>
@@ -66,14 +67,6 @@ template <ContactSurface Object, ForceModel Force,
            std::same_as<typename Object::Scalar, typename Friction::Scalar> &&
            std::same_as<typename Object::Scalar, typename Deformation::Scalar>
 class ContactSolver {
-  struct Last {
-    Pose<typename Object::Scalar> pose;
-    TickResult<typename Object::Scalar> result{};
-    int ticks = 0;  // in a row at this pose, up to 2; 0: none yet
-  };
-  template <class Item, int Role, bool present>
-  using Present = std::conditional_t<present, Item, Absent<Role>>;
-
  public:
   using Scalar = typename Object::Scalar;
   using S = Scalar;
@@ -81,6 +74,9 @@ class ContactSolver {
   static constexpr std::size_t max_regions = Contacts::max_regions;
   static constexpr bool has_friction = Friction::active;
   static constexpr bool is_rate_dependent = RateDependentForceLaw<Force>;
+  static constexpr bool has_memory = StatefulForceLaw<Force>;
+  static constexpr bool resists_twist =
+      detail::Twists<Friction, Contacts, std::same_as<Acting, AtContact>>::value;
 
   /// What a solver is made of. Each part has checked itself when it was made.
   struct Parts {
@@ -91,34 +87,26 @@ class ContactSolver {
     PALPATE_NO_UNIQUE_ADDRESS Contacts contacts{};
     PALPATE_NO_UNIQUE_ADDRESS Deformation deformation{};
     PALPATE_NO_UNIQUE_ADDRESS Coupling coupling{};
+    PALPATE_NO_UNIQUE_ADDRESS detail::Present<RateWindow<S>, 3, is_rate_dependent> rate{};
   };
 
   /// What a tick leaves for the next one: a value, made by initial_state(). A copy goes on from the same
   /// tick. Copies among the states of one solver take no heap; with one region its size is fixed.
-  class State {
+  class State : private detail::TickMemory<S, typename Collector<Contacts, S, Coupling>::State, Force,
+                                           has_friction, resists_twist, max_regions> {
    public:
     /// The regions of the last tick: values to hand over, record or draw.
     [[nodiscard]] std::span<const ContactState<S>> contacts() const noexcept {
-      return {contacts_.begin(), contacts_.size()};
+      return {this->contacts_.begin(), this->contacts_.size()};
     }
     /// Object or laws are others now: the next tick is worked out, though the pose is the last one's.
-    void refresh() noexcept { last_.ticks = (std::min)(last_.ticks, 1); }
-    /// Forgets all contact, as after a calibration of the device.
-    void reset() noexcept {
-      contacts_.clear();
-      regions_.reset();
-      last_.ticks = 0;
-    }
+    void refresh() noexcept { this->last_.ticks = (std::min)(this->last_.ticks, 1); }
+    /// Forgets all contact, as after a calibration of the device, and what laws with memory remember.
+    void reset() noexcept { this->forget(); }
 
    private:
     friend class ContactSolver;
-    explicit State(typename Collector<Contacts, S, Coupling>::State regions) : regions_(std::move(regions)) {}
-
-    typename Collector<Contacts, S, Coupling>::State regions_;
-    Last last_{};
-    PALPATE_NO_UNIQUE_ADDRESS
-    Present<std::array<detail::FrictionMemory<S>, max_regions>, 0, has_friction> memory_{};
-    FixedVector<ContactState<S>, max_regions> contacts_;
+    using State::TickMemory::TickMemory;
   };
 
   /// @throws SetupError where the clustering distance of `Regions` is not positive, or joins too many points.
@@ -129,23 +117,26 @@ class ContactSolver {
         friction_(std::move(parts.friction)),
         deformation_(std::move(parts.deformation)),
         coupling_(std::move(parts.coupling)),
+        rate_(parts.rate),
         collector_(parts.contacts, tool_, coupling_),
-        state_(initial_state()) {}
+        state_(initial_state()) {
+    if constexpr (is_rate_dependent) detail::check(rate_);
+  }
 
   /// One tick with the tool at X (tool to object coordinates).
   [[nodiscard]] TickResult<S> tick(const Pose<S>& X) noexcept
-    requires(!is_rate_dependent)
+    requires(!is_rate_dependent && !has_memory)
   {
     return step(X, S(0), Status::ok, state_);
   }
 
-  /// One tick, dt [s] after the last. Only rate-dependent force laws use dt; if it is not finite or not > 0
-  /// the rate terms are left out of this tick (`Status::invalid_step`).
+  /// One tick, dt [s] after the last. Force laws with a rate term or memory use dt; if it is not finite or
+  /// not > 0 the rate terms are left out of this tick (`Status::invalid_step`).
   [[nodiscard]] TickResult<S> tick(const Pose<S>& X, S dt) noexcept { return evaluate(X, dt, state_); }
 
   /// A tick from a state of the caller's, which becomes that after the tick: trial steps, going back in time.
   [[nodiscard]] TickResult<S> evaluate(const Pose<S>& X, [[maybe_unused]] S dt, State& state) const noexcept {
-    if constexpr (is_rate_dependent) {
+    if constexpr (is_rate_dependent || has_memory) {
       if (!is_finite(dt) || !(dt > S(0))) return step(X, S(0), Status::invalid_step, state);
     }
     return step(X, dt, Status::ok, state);
@@ -238,11 +229,13 @@ class ContactSolver {
   TickResult<S> step(const Pose<S>& X, [[maybe_unused]] S dt, Status status, State& state) const noexcept {
     // The second tick at a pose settles what the motion into it left (slip, rate); after that nothing
     // changes.
-    Last& last = state.last_;
+    auto& last = state.last_;
     const bool again = last.ticks > 0 && same_bits(X, last.pose);
-    if (again && last.ticks > 1) return {last.result.wrench, last.result.status | status};
+    bool settled = again && last.ticks > 1 && !has_memory;
+    if constexpr (is_rate_dependent) settled = settled && state.poses_.at_rest(rate_);
+    if (settled) return {last.result.wrench, last.result.status | status};
     if (!is_usable(X)) {
-      state.reset();
+      state.forget_contact();
       return {{}, status | Status::invalid_pose};
     }
     TickResult<S> result;
@@ -262,12 +255,14 @@ class ContactSolver {
 
   TickResult<S> in_contact(const Pose<S>& X, [[maybe_unused]] S dt, State& state) const noexcept {
     state.contacts_.clear();
+    if constexpr (is_rate_dependent) state.poses_.push(X, dt);
     Sums sums;
     TickResult<S> result{{}, collector_.collect(object_, tool_, force_, X, state.regions_, sums)};
+    if constexpr (has_memory) detail::advance(force_, state.regions_, dt, sums, state.law_);
     if (!has(result.status, Status::contact)) return result;
     if constexpr (has_friction && ClusteredTopology<Contacts>) {
       if (state.regions_.changed())
-        detail::inherit(friction_, force_, state.regions_, sums, X, state.memory_);
+        detail::inherit(friction_, force_, state.regions_, sums, X, state.last_.pose.rotation, state.memory_);
     }
     for (std::size_t k = 0; k < max_regions; ++k) {
       if (state.regions_.slot(k).active) press(k, sums[k], X, dt, state, result.wrench);
@@ -283,14 +278,12 @@ class ContactSolver {
     const RegionSlot& slot = state.regions_.slot(k);
     const Vec3<S> normal = sum.normal();
     S normal_force = sum.normal_force();
-    const S depth = equivalent_depth(sum, normal_force);
+    const S depth = equivalent_depth(k, sum, normal_force, state);
     if constexpr (is_rate_dependent) {
-      if (dt > S(0) && state.last_.ticks > 0 && normal_force > (std::numeric_limits<S>::min)()) {
-        // How fast the tool's point at the pressure centre goes in. Differences of depths would jump when
-        // regions merge.
-        const Vec3<S> centre = sum.centre();
-        const S gone_in = normal.dot(state.last_.pose * X.to_tool(centre) - centre);
-        const S rate = (std::min)(gone_in, sum.deepest) / dt;  // no deeper than it came
+      if (dt > S(0) && normal_force > (std::numeric_limits<S>::min)()) {
+        // Of the tool's point at the pressure centre. Differences of depths would jump when regions merge.
+        const S gone_in = state.poses_.rate(X.to_tool(sum.centre()), normal, rate_);
+        const S rate = (std::min)(gone_in, sum.deepest / dt);  // no deeper than it came
         const S total = (std::max)(normal_force + (force_.force(depth, rate) - force_.force(depth)), S(0));
         sum.scale(total / normal_force);
         normal_force = total;
@@ -300,17 +293,19 @@ class ContactSolver {
                             -depth * normal, sum.force,  Vec3<S>::Zero(),           normal_force, sum.area(),
                             sum.deepest};
     if constexpr (is_relieved) {
-      contact.dent = equivalent_depth(sum, sum.full_normal_force()) - depth;
+      contact.dent = equivalent_depth(k, sum, sum.full_normal_force(), state) - depth;
       contact.displacement -= contact.dent * normal;
     }
     if constexpr (has_friction) {
-      detail::FrictionMemory<S>& memory = state.memory_[k];
+      auto& memory = state.memory_[k];
       if (slot.merged == 0 && slot.parent == RegionSlot::none) {
         memory.anchor = Anchor<S>::begin(X, contact.centre, normal, depth);
+        if constexpr (resists_twist) memory.twist.release(X.rotation);
       }
-      const AnchoredForce<S> anchored = advance<typename Friction::Slip, typename Friction::Skew>(
-          memory.anchor, friction_, detail::law_at(force_, contact.centre), X, normal, contact.centre, depth,
-          normal_force);
+      const auto& law = detail::law_at(force_, contact.centre);
+      const auto disc = [&] { return detail::disc_of(law, sum, normal_force, detail::skew_of(friction_)); };
+      const AnchoredForce<S> anchored = advance(memory.anchor, friction_, law, X, normal, contact.centre,
+                                                depth, normal_force, memory.twist, disc);
       if (anchored.normal_force != normal_force && normal_force > S(0))
         sum.scale(anchored.normal_force / normal_force);
       memory.friction = anchored.friction;
@@ -323,6 +318,7 @@ class ContactSolver {
       contact.normal_force = anchored.normal_force;
       if constexpr (std::same_as<Acting, AtContact>) {
         wrench.torque += (anchored.at - X * centre_of_mass()).cross(anchored.friction);
+        if constexpr (resists_twist) wrench.torque += memory.twist.torque;
       }
     }
     contact.depth = sum.depth_below(contact.origin(), normal);
@@ -335,8 +331,11 @@ class ContactSolver {
   }
 
   /// D_n of the point contact with the same force (IV.C); a single point is its own.
-  [[nodiscard]] S equivalent_depth(const Sum& sum, S normal_force) const noexcept {
-    if constexpr (std::same_as<Contacts, SinglePoint>) {
+  [[nodiscard]] S equivalent_depth([[maybe_unused]] std::size_t k, const Sum& sum, S normal_force,
+                                   [[maybe_unused]] const State& state) const noexcept {
+    if constexpr (has_memory) {
+      return force_.depth(normal_force, state.law_[k].state);
+    } else if constexpr (std::same_as<Contacts, SinglePoint>) {
       return sum.deepest;
     } else {
       return detail::law_at(force_, sum.centre()).depth(normal_force);
@@ -349,6 +348,7 @@ class ContactSolver {
   PALPATE_NO_UNIQUE_ADDRESS Friction friction_;
   PALPATE_NO_UNIQUE_ADDRESS Deformation deformation_;
   PALPATE_NO_UNIQUE_ADDRESS Coupling coupling_;
+  PALPATE_NO_UNIQUE_ADDRESS detail::Present<RateWindow<S>, 3, is_rate_dependent> rate_;
   Collector<Contacts, S, Coupling> collector_;
   State state_;
 };

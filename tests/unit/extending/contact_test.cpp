@@ -112,14 +112,14 @@ struct SofterAcross {  // a skew rule: F_ct = r law(|D_t|), as a bonded disc at 
 // [extending]
 struct OneLimit {  // a slip rule: the stretch never gives more than the sliding limit
   static constexpr bool shifts_by_travel = false;
-  template <class Skew, palpate::FrictionLimits Friction, class Law>
-  static palpate::SlipResult<double> advance(const Friction& friction, const Law& law,
+  template <palpate::FrictionLimits Friction, class Skew, class Law>
+  static palpate::SlipResult<double> advance(const Friction& friction, const Skew& skew, const Law& law,
                                              const palpate::SlipTrial<double>& trial,
                                              palpate::SlipState<double>& state) noexcept {
     const auto limit = [&](double F_cn) { return friction.sliding_limit(F_cn); };
-    const double D_t = Skew::admissible(law, trial.depth, trial.normal_force, trial.stretch, limit);
+    const double D_t = skew.admissible(law, trial.depth, trial.normal_force, trial.stretch, limit);
     state.sliding = D_t < trial.stretch;
-    return {D_t, Skew::force(law, trial.depth, trial.normal_force, D_t)};
+    return {D_t, skew.force(law, trial.depth, trial.normal_force, D_t)};
   }
 };
 // [extending]
@@ -217,8 +217,8 @@ TEST_CASE("a solver of the user's policies alone: two pins slide, each region fe
 }
 
 TEST_CASE("the user's compliance ratio: two pins relieve each other by it") {
-  using Skin = ContactSolver<Ground, Spring, Rubber, Regions<8, AreaSharing>, NoDeformation<double>, AtContact,
-                             CompliantRegions<SkinOnBone>>;
+  using Skin = ContactSolver<Ground, Spring, Rubber, Regions<8, AreaSharing>, NoDeformation<double>,
+                             AtContact, CompliantRegions<SkinOnBone>>;
   Skin solver({.object = {},
                .tool = pins(),
                .force = {100},
@@ -260,6 +260,13 @@ TEST_CASE("the user's rate term, his law for several depths at once, and his map
                                                                     .friction = {.mu = 0.3},
                                                                     .contacts = {.distance = 1e-3}});
   CHECK(rough.tick(at(0, -1e-3)).wrench.force.y() > 0);
+}
+
+TEST_CASE("the user's law with memory: pressed 20 mm it holds 1 N, and 10 mm of it stay") {
+  ContactSolver<Ground, Clay> solver({.object = {}, .tool = {}, .force = {{100}}});
+  CHECK_RELATIVE(solver.tick(at(0, -0.02), 1e-3).wrench.force.y(), 1.0, 1e-12);
+  CHECK(solver.tick(at(0, -0.009), 1e-3).wrench.force.y() == 0);
+  CHECK_RELATIVE(solver.tick(at(0, -0.015), 1e-3).wrench.force.y(), 0.5, 1e-12);
 }
 
 TEST_CASE("the user's tree: what it calls apart is not asked, the rest is as without it") {

@@ -23,6 +23,7 @@
 #include <palpate/core/scalar.hpp>
 
 #include <concepts>
+#include <span>
 #include <type_traits>
 
 namespace palpate {
@@ -109,10 +110,26 @@ concept HasExtent = requires(const L& law) {
   { law.extent() } noexcept -> std::same_as<typename L::Scalar>;
 };
 
+/// A state that goes on in another region, where regions merged or split.
+template <class L>
+struct CarriedState {
+  typename L::State state;
+  typename L::Scalar depth;  ///< D of its region in the last tick [m]
+  typename L::Scalar share;  ///< [-] > 0; the shares of all parts add up to 1
+};
+
+template <
+    class L>  // optional: the state at the depth D [m] that gives the parts' mean share of the law's force
+concept HasCarried =
+    requires(const L& law, std::span<const CarriedState<L>> parts, typename L::Scalar depth) {
+      { law.carried(parts, depth) } noexcept -> std::same_as<typename L::State>;
+    };
+
 /// A force law with memory. Its state is a value, one for each region, that `advance` takes over a tick, also
 /// while nothing touches; all else reads it. As a `ForceLaw`, without a state, it is the law of what was
 /// never touched. Over any path of D, F dD is at least what the free energy rises by: a law with memory only
-/// loses energy. Without `extent` the state ends with the contact.
+/// loses energy. Without `extent` the state ends with the contact; without `carried` merged regions go on in
+/// the state of the one with most energy, and the force may jump.
 template <class L>
 concept StatefulForceLaw = ForceLaw<L> && HasState<L> && HasAdvance<L> && HasStateForce<L> &&
                            HasStateStiffness<L> && HasStateEnergy<L> && HasStateDepth<L>;

@@ -8,6 +8,7 @@
 #include <palpate/law/force/linear.hpp>
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 namespace palpate {
@@ -82,6 +83,16 @@ class PlasticForce {
   }
   /// D [m] at the force F [N]; the set where there is none.
   [[nodiscard]] S depth(S force, const State& state) const noexcept { return state.set + law_.depth(force); }
+
+  /// The set at depth D [m] that leaves the parts' mean share of the law's force.
+  [[nodiscard]] State carried(std::span<const CarriedState<PlasticForce>> parts, S depth) const noexcept {
+    S left = S(0);
+    for (const CarriedState<PlasticForce>& part : parts) {
+      const S fresh = law_.force(part.depth);
+      left += part.share * (fresh > S(0) ? law_.force(part.depth - part.state.set) / fresh : S(1));
+    }
+    return {(std::max)(depth - law_.depth((std::min)(left, S(1)) * law_.force(depth)), S(0))};
+  }
 
   /// The law's own: what was never touched, below yield.
   [[nodiscard]] S force(S depth) const noexcept { return law_.force(depth); }

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <utility>
 
 namespace palpate {
@@ -120,6 +121,19 @@ class RelaxingForce {
   /// D [m] at the force F [N]; D_free where there is none.
   [[nodiscard]] S depth(S force, const State& state) const noexcept {
     return law_.depth(is_positive(force) ? force + lost(state) : lost(state));
+  }
+
+  /// The parts' mean, each s_i as a share of the law's force, at depth D [m].
+  [[nodiscard]] State carried(std::span<const CarriedState<RelaxingForce>> parts, S depth) const noexcept {
+    State state;
+    state.elastic = law_.force(depth);
+    for (const CarriedState<RelaxingForce>& part : parts) {
+      const S fresh = law_.force(part.depth);
+      if (!(fresh > S(0))) continue;
+      for (std::size_t i = 0; i < N; ++i)
+        state.relaxed[i] += part.share * state.elastic * (part.state.relaxed[i] / fresh);
+    }
+    return state;
   }
 
   /// The law's own: what was never touched, at once.

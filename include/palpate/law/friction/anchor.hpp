@@ -6,6 +6,10 @@
 
 #include <palpate/core/pose.hpp>
 #include <palpate/law/friction/slip.hpp>
+#include <palpate/law/friction/twist.hpp>
+
+#include <algorithm>
+#include <type_traits>
 
 namespace palpate {
 
@@ -46,23 +50,39 @@ struct AnchoredForce {
   S normal_force;    ///< F_cn after skewing [N]
 };
 
+/// Stands for the torsional spring of a contact that has none.
+struct NoTwist {};
+
 /// One tick: moves the anchor by the slip rule and returns the friction on the tool (IV.B, steps 1 to 4).
 /// `normal` is the contact's present unit normal, `centre` its pressure centre, `depth` D_n, `normal_force`
-/// F_cn.
-template <class Slip, class Skew, FrictionLaw F, ForceLaw L>
+/// F_cn. With a `Twist` the region resists rotation about its normal too, with `disc()`, a TwistedDisc, asked
+/// only where the tool has turned: force f and torque tau slip together, the slip rule being given the
+/// stretch of sqrt(f^2 + (tau/lever)^2), and what it lets go goes from both by the normal of the limit
+/// surface.
+template <FrictionLaw F, ForceLaw L, class Twisting = NoTwist, class Disc = NoTwist>
 [[nodiscard]] inline AnchoredForce<typename L::Scalar> advance(
     Anchor<typename L::Scalar>& anchor, const F& friction, const L& law, const Pose<typename L::Scalar>& X,
     const Vec3<typename L::Scalar>& normal, const Vec3<typename L::Scalar>& centre, typename L::Scalar depth,
-    typename L::Scalar normal_force) noexcept {
+    typename L::Scalar normal_force, Twisting&& twist = {}, const Disc& disc = {}) noexcept {
   using S = typename L::Scalar;
+  using Slip = typename F::Slip;
+  constexpr bool twists = !std::is_same_v<std::remove_cvref_t<Twisting>, NoTwist>;
+  const auto& skew = detail::skew_of(friction);
   Vec3<S> tip = X * anchor.point_T;
   Vec3<S> D_t = tangential<S>(tip - anchor.origin, anchor.normal);
   const Vec3<S> motion = tip - anchor.tip;
   const S trial = D_t.norm();
   const S travel = motion.norm();
   const S before = tangential<S>(anchor.tip - anchor.origin, anchor.normal).norm();
-  const SlipTrial<S> step{depth, normal_force, trial, before, travel};
-  const SlipResult<S> now = Slip::template advance<Skew>(friction, law, step, anchor.slip);
+  SlipTrial<S> step{depth, normal_force, trial, before, travel};
+  [[maybe_unused]] detail::TwistTrial<S> turned;
+  if constexpr (twists)
+    turned = detail::turn(twist, anchor.slip, skew, law, X.rotation, anchor.normal, disc, step);
+  SlipResult<S> now = Slip::advance(friction, skew, law, step, anchor.slip);
+  S slipped = now.stretch < trial ? (trial - now.stretch) / trial : S(0);
+  if constexpr (twists) {
+    if (turned.active) slipped = detail::settle(twist, anchor.slip, skew, law, trial, step, turned, now);
+  }
 
   Vec3<S> along;
   if constexpr (Slip::shifts_by_travel) {
@@ -72,17 +92,16 @@ template <class Slip, class Skew, FrictionLaw F, ForceLaw L>
       D_t = tangential<S>(tip - anchor.origin, anchor.normal);
     }
     along = unit_or<S>(D_t, Vec3<S>::Zero());
-  } else if (now.stretch < trial) {
-    const S slipped = trial - now.stretch;
+  } else if (slipped > S(0)) {
     // p0 trails the tip by the stretch, so n lags the present normal by that distance.
-    const Vec3<S> turned = anchor.normal + (normal - anchor.normal) * (slipped / trial);
-    anchor.normal = unit_or<S>(turned, normal);
+    const Vec3<S> turned_normal = anchor.normal + (normal - anchor.normal) * slipped;
+    anchor.normal = unit_or<S>(turned_normal, normal);
     along = unit_or<S>(tangential<S>(D_t, anchor.normal), Vec3<S>::Zero());
     D_t = now.stretch * along;
     const Vec3<S> creep = centre - tip;
     const S distance = creep.norm();
     if (distance > S(0)) {
-      tip += creep * ((std::min)(travel, distance) / distance);
+      tip += creep * ((std::min)(step.travel, distance) / distance);
       anchor.point_T = X.to_tool(tip);
     }
     anchor.origin = tip - D_t + depth * anchor.normal;
@@ -90,6 +109,9 @@ template <class Slip, class Skew, FrictionLaw F, ForceLaw L>
     along = unit_or<S>(D_t, Vec3<S>::Zero());
   }
   anchor.tip = tip;
+  if constexpr (twists) {
+    if (turned.active) detail::set_twist(twist, X.rotation, anchor.normal, turned.angle, slipped);
+  }
   return {-now.force.tangential * along, tip, D_t, now.force.normal};
 }
 

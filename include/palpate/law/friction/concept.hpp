@@ -17,10 +17,12 @@
 /// | skew rule       | force of a displacement D = D_n + D_t                  | use it when              |
 /// |-----------------|--------------------------------------------------------|--------------------------|
 /// | `ByComponents`  | law(|D_n|) along the normal, law(|D_t|) across (IV.B)  | the default              |
+/// | `BondedDisc`    | as ByComponents, softer across as elasticity has it    | nu is known              |
 /// | `Radial`        | law(|D|) against D, then decomposed (IV.C)             | the paper's regions      |
 ///
 /// A law says how large friction may be. The slip rule says how the origin p0 of the deformation moves when
-/// the limit is passed, the skew rule how much force a sideways stretch gives. Both are types inside the law.
+/// the limit is passed, the skew rule how much force a sideways stretch gives and how a region resists twist.
+/// Both are types inside the law.
 /// Absent on purpose: velocity-regularised laws, because they cannot keep a tool at rest.
 
 #include <palpate/core/absent.hpp>
@@ -40,31 +42,39 @@ struct AnyLimit {
 
 /// The force of the stretch |D_t| [m] at depth D_n [m]: (law, depth, F_cn at no stretch, stretch).
 template <class K, class S>
-concept HasSkewForce = requires(const LinearForce<S>& law, S x) {
-  { K::force(law, x, x, x) } noexcept -> std::same_as<SkewedForce<S>>;
+concept HasSkewForce = requires(const K& skew, const LinearForce<S>& law, S x) {
+  { skew.force(law, x, x, x) } noexcept -> std::same_as<SkewedForce<S>>;
 };
 
 /// Its inverse, the stretch [m] whose tangential force is f [N]: (law, depth, f).
 template <class K, class S>
-concept HasSkewStretch = requires(const LinearForce<S>& law, S x) {
-  { K::stretch(law, x, x) } noexcept -> std::same_as<S>;
+concept HasSkewStretch = requires(const K& skew, const LinearForce<S>& law, S x) {
+  { skew.stretch(law, x, x) } noexcept -> std::same_as<S>;
 };
 
 /// The largest stretch <= trial [m] whose tangential force is within limit(F_cn): (law, depth, F_cn at no
 /// stretch, trial, limit).
 template <class K, class S>
-concept HasSkewAdmissible = requires(const LinearForce<S>& law, S x, const detail::AnyLimit<S>& limit) {
-  { K::admissible(law, x, x, x, limit) } noexcept -> std::same_as<S>;
-};
+concept HasSkewAdmissible =
+    requires(const K& skew, const LinearForce<S>& law, S x, const detail::AnyLimit<S>& limit) {
+      { skew.admissible(law, x, x, x, limit) } noexcept -> std::same_as<S>;
+    };
 
 /// The elastic energy [J] that the stretch adds: (law, depth, stretch).
 template <class K, class S>
-concept HasSkewEnergy = requires(const LinearForce<S>& law, S x) {
-  { K::energy(law, x, x) } noexcept -> std::same_as<S>;
+concept HasSkewEnergy = requires(const K& skew, const LinearForce<S>& law, S x) {
+  { skew.energy(law, x, x) } noexcept -> std::same_as<S>;
 };
 
-/// Skew rule: static functions, templates of any `ForceLaw`. All are continuous and rise with the stretch;
-/// force and energy are 0 at stretch 0.
+/// Optional: the torsional stiffness of a region that sticks, over a^2 dF_n/dD with a the radius of its area.
+/// Without it a region gives no torque against twist.
+template <class K>
+concept HasTorsionalRatio = requires(const K& skew) {
+  { skew.torsional_ratio() } noexcept -> std::convertible_to<double>;
+};
+
+/// Skew rule: functions, static ones where it has no parameters, templates of any `ForceLaw`. All are
+/// continuous and rise with the stretch; force and energy are 0 at stretch 0.
 template <class K, class S>
 concept SkewRule =
     Real<S> && HasSkewForce<K, S> && HasSkewStretch<K, S> && HasSkewAdmissible<K, S> && HasSkewEnergy<K, S>;
@@ -96,14 +106,14 @@ concept HasShiftsByTravel = requires {
   { R::shifts_by_travel } -> std::convertible_to<bool>;
 };
 
-/// One tick of stick or slip, `advance<Skew>(friction, law, trial, state)`. A template of any
+/// One tick of stick or slip, `advance(friction, skew, law, trial, state)`. A template of any skew rule, any
 /// `FrictionLimits` and any `ForceLaw`; not of `FrictionLaw`, which asks for the rule itself.
 template <class R, class F>
 concept HasSlipAdvance =
-    requires(const F& friction, const LinearForce<typename F::Scalar>& law,
+    requires(const F& friction, const typename F::Skew& skew, const LinearForce<typename F::Scalar>& law,
              const SlipTrial<typename F::Scalar>& trial, SlipState<typename F::Scalar>& state) {
       {
-        R::template advance<typename F::Skew>(friction, law, trial, state)
+        R::advance(friction, skew, law, trial, state)
       } noexcept -> std::same_as<SlipResult<typename F::Scalar>>;
     };
 
@@ -130,9 +140,8 @@ struct NoFriction {
   };
   struct Slip {
     static constexpr bool shifts_by_travel = false;
-    template <class>
-    static SlipResult<double> advance(const NoFriction&, const LinearForce<double>&, const SlipTrial<double>&,
-                                      SlipState<double>&) noexcept;
+    static SlipResult<double> advance(const NoFriction&, const Skew&, const LinearForce<double>&,
+                                      const SlipTrial<double>&, SlipState<double>&) noexcept;
   };
   [[nodiscard]] double static_limit(double) const noexcept;
   [[nodiscard]] double sliding_limit(double) const noexcept;
@@ -140,9 +149,19 @@ struct NoFriction {
 };
 template <class F>
 using CheckedFriction = ActiveOrT<F, NoFriction>;
+
+/// The law's skew rule: what `skew()` returns, where the law has that.
+template <class F>
+[[nodiscard]] constexpr typename F::Skew skew_of(const F& friction) noexcept {
+  if constexpr (requires { friction.skew(); })
+    return friction.skew();
+  else
+    return {};
+}
 }  // namespace detail
 
-/// Friction: its limits, and the slip and skew rules that it goes with. Absent where `active` is false; then
+/// Friction: its limits, and the slip and skew rules that it goes with; `skew()` where the skew rule has
+/// parameters. Absent where `active` is false; then
 /// nothing else is asked of it.
 template <class F>
 concept FrictionLaw =

@@ -33,8 +33,9 @@ class CoulombFriction {
   static constexpr bool active = true;
 
   struct Params {
-    S mu_static;   ///< [-] > 0
-    S mu_dynamic;  ///< [-] > 0, <= mu_static
+    S mu_static;                             ///< [-] > 0
+    S mu_dynamic;                            ///< [-] > 0, <= mu_static
+    PALPATE_NO_UNIQUE_ADDRESS Skew_ skew{};  ///< parameters of the skew rule, where it has any
   };
 
   constexpr explicit CoulombFriction(const Params& params) : p_(params) {
@@ -55,6 +56,7 @@ class CoulombFriction {
   }
   /// sup f_max / F_n [-].
   [[nodiscard]] constexpr S max_coefficient() const noexcept { return p_.mu_static; }
+  [[nodiscard]] constexpr const Skew& skew() const noexcept { return p_.skew; }
   [[nodiscard]] constexpr const Params& params() const noexcept { return p_; }
 
  private:

@@ -46,10 +46,11 @@ class PowerLawFriction {
   static constexpr bool active = true;
 
   struct Params {
-    S K;                       ///< [N^(1-beta)] > 0
-    S beta;                    ///< [-] in [2/3, 1]
-    S mu_dynamic;              ///< [-] > 0
-    S linear_below = S(0.01);  ///< F_0 [N] >= 0
+    S K;                                     ///< [N^(1-beta)] > 0
+    S beta;                                  ///< [-] in [2/3, 1]
+    S mu_dynamic;                            ///< [-] > 0
+    S linear_below = S(0.01);                ///< F_0 [N] >= 0
+    PALPATE_NO_UNIQUE_ADDRESS Skew_ skew{};  ///< parameters of the skew rule, where it has any
   };
 
   explicit PowerLawFriction(const Params& params) : p_(params) {
@@ -104,6 +105,7 @@ class PowerLawFriction {
   }
   /// sup f_max / F_n [-] = K F_0^(beta-1). Infinite for the printed power law (F_0 = 0, beta < 1).
   [[nodiscard]] S max_coefficient() const noexcept { return max_coefficient_; }
+  [[nodiscard]] constexpr const Skew& skew() const noexcept { return p_.skew; }
   [[nodiscard]] const Params& params() const noexcept { return p_; }
 
  private:

@@ -16,11 +16,11 @@ namespace palpate {
 /// split regions; sets state.springs. One spring with the joint force of two would store more energy than
 /// both, a gift to the user at each merger.
 template <class Skew, ForceLaw L, Real S = typename L::Scalar>
-[[nodiscard]] inline S carried_stretch(const L& law, S depth, S force, S energy,
+[[nodiscard]] inline S carried_stretch(const Skew& skew, const L& law, S depth, S force, S energy,
                                        SlipState<S>& state) noexcept {
-  const auto one = [&](S t) { return Skew::force(law, depth, S(0), t).tangential; };
-  const auto excess = [&](S t) { return force * Skew::energy(law, depth, t) - energy * one(t); };
-  S stretch = Skew::stretch(law, depth, force);
+  const auto one = [&](S t) { return skew.force(law, depth, S(0), t).tangential; };
+  const auto excess = [&](S t) { return force * skew.energy(law, depth, t) - energy * one(t); };
+  S stretch = skew.stretch(law, depth, force);
   if (excess(stretch) > S(0)) stretch = detail::root_below(stretch, excess);
   state.springs = one(stretch) > S(0) ? (std::max)(force / one(stretch), S(1)) : S(1);
   return stretch;
@@ -42,10 +42,10 @@ struct ReturnMapping {
   static constexpr bool shifts_by_travel = false;
 
   template <class Skew, FrictionLimits F, ForceLaw L, Real S = typename L::Scalar>
-  [[nodiscard]] static SlipResult<S> advance(const F& friction, const L& law, const SlipTrial<S>& trial,
-                                             SlipState<S>& state) noexcept {
+  [[nodiscard]] static SlipResult<S> advance(const F& friction, const Skew& skew, const L& law,
+                                             const SlipTrial<S>& trial, SlipState<S>& state) noexcept {
     constexpr S rest = S(0.9);  // gone back by a tenth of the stretch
-    const SkewedForce<S> stuck = Skew::force(law, trial.depth, trial.normal_force, trial.stretch);
+    const SkewedForce<S> stuck = skew.force(law, trial.depth, trial.normal_force, trial.stretch);
     const auto limit = [&](S normal_force) {
       return state.strength *
              (state.sliding ? friction.sliding_limit(normal_force) : friction.static_limit(normal_force));
@@ -56,13 +56,13 @@ struct ReturnMapping {
         if (state.springs * stuck.tangential > f_max)
           state.springs = (std::max)(f_max / stuck.tangential, S(1));
       }
-      return Skew::admissible(law, trial.depth, trial.normal_force, trial.stretch, [&](S normal_force) {
+      return skew.admissible(law, trial.depth, trial.normal_force, trial.stretch, [&](S normal_force) {
         const S f_max = limit(normal_force);
         return state.springs > S(1) ? f_max / state.springs : f_max;
       });
     };
     const auto static_over_sliding = [&](S stretch) {
-      const S normal = Skew::force(law, trial.depth, trial.normal_force, stretch).normal;
+      const S normal = skew.force(law, trial.depth, trial.normal_force, stretch).normal;
       const S sliding = friction.sliding_limit(normal);
       return sliding > S(0) ? friction.static_limit(normal) / sliding : S(1);
     };
@@ -86,7 +86,7 @@ struct ReturnMapping {
       stretch = settle();
     }
     state.slid = stretch < trial.stretch ? stretch : (std::max)(state.slid, stretch);
-    SkewedForce<S> force = Skew::force(law, trial.depth, trial.normal_force, stretch);
+    SkewedForce<S> force = skew.force(law, trial.depth, trial.normal_force, stretch);
     force.tangential *= state.springs;
     return {stretch, force};
   }
@@ -99,9 +99,9 @@ struct LiteralShift {
   static constexpr bool shifts_by_travel = true;
 
   template <class Skew, FrictionLimits F, ForceLaw L, Real S = typename L::Scalar>
-  [[nodiscard]] static SlipResult<S> advance(const F& friction, const L& law, const SlipTrial<S>& trial,
-                                             SlipState<S>& state) noexcept {
-    SkewedForce<S> stuck = Skew::force(law, trial.depth, trial.normal_force, trial.stretch);
+  [[nodiscard]] static SlipResult<S> advance(const F& friction, const Skew& skew, const L& law,
+                                             const SlipTrial<S>& trial, SlipState<S>& state) noexcept {
+    SkewedForce<S> stuck = skew.force(law, trial.depth, trial.normal_force, trial.stretch);
     stuck.tangential *= state.springs;
     state.sliding = stuck.tangential > friction.static_limit(stuck.normal);
     if (!state.sliding) return {trial.stretch, stuck};

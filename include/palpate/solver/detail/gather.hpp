@@ -130,6 +130,21 @@ inline void for_each_touching_leaf(const ToolPoints<S>& tool, const Pose<S>& X, 
                             });
   }
 }
+
+/// What adds up a region of many points. A law with memory asks for the region's energy too.
+template <class Force, Real S, class Without>
+using SumFor = std::conditional_t<StatefulForceLaw<Force>, EnergySum<S>, Without>;
+
+template <class Leaves, StatefulForceLaw Law, Real S>
+inline void add_energy(const Leaves& leaves, const ToolPoints<S>& tool, std::uint32_t begin, const Law& law,
+                       const Pose<S>& X, const PenetrationBatch<S>& in, EnergySum<S>& sum) noexcept {
+  std::array<S, batch_size> energy, f;
+  leaves.alone(tool, begin, law, X, in, energy, f);
+  for (std::size_t i = 0; i < batch_size; ++i) {
+    sum.energy += energy[i];
+    sum.square += f[i] * law.force(in.depth[i]);
+  }
+}
 }  // namespace detail
 
 /// `Coupling` counts for topologies of several regions.
@@ -167,8 +182,8 @@ class Collector<SinglePoint, S, Coupling> {
 template <MassSharing Sharing, Real S, class Coupling>
 class Collector<SingleRegion<Sharing>, S, Coupling> {
  public:
-  template <ForceModel>
-  using Sum = RegionSum<S>;
+  template <ForceModel Force>
+  using Sum = detail::SumFor<Force, S, RegionSum<S>>;
 
   Collector(const SingleRegion<Sharing>&, const ToolPoints<S>& tool, const Coupling&) : leaves_(tool) {}
 
@@ -177,17 +192,19 @@ class Collector<SingleRegion<Sharing>, S, Coupling> {
 
   template <ContactSurface Object, ForceModel Force>
   Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
-                 State& state, std::array<RegionSum<S>, 1>& sums) const noexcept {
+                 State& state, std::array<Sum<Force>, 1>& sums) const noexcept {
     auto leaves = leaves_.begin(tool, X);
     detail::for_each_touching_leaf(
         tool, X, object,
         [&](std::uint32_t begin, const PointBatch<S>& x, const PenetrationBatch<S>& in) noexcept {
           leaves_.add(tool, begin, force, x, in, leaves);
+          if constexpr (StatefulForceLaw<Force>)
+            detail::add_energy(leaves_, tool, begin, force, X, in, sums[0]);
         });
     state.update(!leaves.empty());
     if (leaves.empty()) return Status::ok;
-    RegionSum<S>& sum = sums[0];
-    sum = leaves.total();
+    Sum<Force>& sum = sums[0];
+    static_cast<RegionSum<S>&>(sum) = leaves.total();
     sum.scale(Sharing::norm(static_cast<S>(sum.points)));
     return Status::contact | detail::depth_status(object, force, sum.deepest) | state.keep_side(X, sum);
   }
@@ -215,8 +232,8 @@ class Collector<Regions<N, Sharing>, S, Coupling> {
   };
 
  public:
-  template <ForceModel>
-  using Sum = typename Relief::Sum;
+  template <ForceModel Force>
+  using Sum = detail::SumFor<Force, S, typename Relief::Sum>;
 
   Collector(const Regions<N, Sharing>& regions, const ToolPoints<S>& tool, const Coupling& coupling)
       : graph_(tool, static_cast<S>(regions.distance)),
@@ -273,6 +290,10 @@ class Collector<Regions<N, Sharing>, S, Coupling> {
   template <ContactSurface Object, ForceModel Force>
   Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
                  State& state, std::array<Sum<Force>, N>& sums) const noexcept {
+    static_assert(
+        !(Relief::active && StatefulForceLaw<Force>),
+        "CompliantRegions share the force of laws without memory: a law with memory needs another coupling, "
+        "such as IndependentRegions");
     std::size_t leaves = 0, count = 0;
     S deepest = S(0);
     detail::for_each_touching_leaf(
@@ -306,12 +327,16 @@ class Collector<Regions<N, Sharing>, S, Coupling> {
         const PointBatch<S>& x = leaves_.placed(tool, leaf.begin, X);
         if (leaf.slots == bit) {
           leaves_.add(tool, leaf.begin, force, x, leaf.in, sum, relief_.left(relief, leaf.begin));
+          if constexpr (StatefulForceLaw<Force>)
+            detail::add_energy(leaves_, tool, leaf.begin, force, X, leaf.in, sums[slot]);
           continue;
         }
         PenetrationBatch<S> own = leaf.in;
         for (std::uint32_t i = 0; i < leaf_size; ++i)
           own.depth[i] = leaf.slot[i] == slot ? own.depth[i] : S(0);
         leaves_.add(tool, leaf.begin, force, x, own, sum, relief_.left(relief, leaf.begin));
+        if constexpr (StatefulForceLaw<Force>)
+          detail::add_energy(leaves_, tool, leaf.begin, force, X, own, sums[slot]);
       }
       static_cast<RegionSum<S>&>(sums[slot]) = sum.total();
       sums[slot].scale(Sharing::norm(static_cast<S>(sums[slot].points)));

@@ -4,33 +4,68 @@
 /// @file What friction remembers of a region, and how that is carried over when regions merge or split.
 
 #include <palpate/contact/region_slot.hpp>
+#include <palpate/contact/topology.hpp>
 #include <palpate/law/friction/anchor.hpp>
 #include <palpate/law/map/concept.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <limits>
+#include <type_traits>
 
 namespace palpate::detail {
 
+/// True where regions of this friction law and topology resist twist about their normal. The printed slip
+/// rule has no such thing, a point has no area, and a wrench at the centre of mass no torque.
+template <class Friction, class Contacts, bool has_torque>
+struct Twists {
+  static constexpr bool value = false;
+};
+template <class Friction, class Contacts>
+  requires(Friction::active && !std::same_as<Contacts, SinglePoint>)
+struct Twists<Friction, Contacts, true> {
+  static constexpr bool value =
+      HasTorsionalRatio<typename Friction::Skew> && !Friction::Slip::shifts_by_travel;
+};
+
 /// Of one region, from tick to tick.
-template <Real S>
+template <Real S, bool twists>
 struct FrictionMemory {
   Anchor<S> anchor;
+  PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<twists, Twist<S>, NoTwist> twist;
   Vec3<S> friction;  ///< of the last tick [N]
   S depth;           ///< D_n of the last tick [m]
 };
 
+/// The region as a disc. Its stiffness, were it pressed flat, is the law's at the deepest point times the sum
+/// of the points' weights.
+template <ForceLaw Law, class Sum, Real S, class Skew>
+[[nodiscard]] TwistedDisc<S> disc_of(const Law& law, const Sum& sum, S normal_force,
+                                     const Skew& skew) noexcept {
+  if constexpr (HasTorsionalRatio<Skew>) {
+    const S a = radius_of(sum.area()), f = law.force(sum.deepest);
+    const S stiffness = f > S(0) ? law.stiffness(sum.deepest) * (normal_force / f) : S(0);
+    return {a, static_cast<S>(skew.torsional_ratio()) * a * a * stiffness};
+  } else {
+    return {S(0), S(0)};
+  }
+}
+
 /// Each region takes the share of every predecessor's tangential force and elastic energy that its normal
 /// force is of all of that predecessor's successors; so the sum of the forces is kept and no energy is added.
-/// `regions`: the collector's state, whose slots say who inherits from whom; `sums`: this tick's, by slot.
-template <FrictionLaw Friction, ForceModel Force, class Regions, class Sum, Real S, std::size_t N>
+/// Torque against twist goes with it, and so does the couple of friction forces that act at different points
+/// and now act at one. `regions`: the collector's state, whose slots say who inherits from whom; `sums`: this
+/// tick's, by slot; `rotation`: the tool's in the last tick.
+template <FrictionLaw Friction, ForceModel Force, class Regions, class Sum, Real S, bool twists,
+          std::size_t N>
 void inherit(const Friction& law_of_friction, const Force& force, const Regions& regions,
-             const std::array<Sum, N>& sums, const Pose<S>& X,
-             std::array<FrictionMemory<S>, N>& memory) noexcept {
-  using Skew = typename Friction::Skew;
-  const std::array<FrictionMemory<S>, N> last = memory;
+             const std::array<Sum, N>& sums, const Pose<S>& X, [[maybe_unused]] const Mat3<S>& rotation,
+             std::array<FrictionMemory<S, twists>, N>& memory) noexcept {
+  const auto& skew = skew_of(law_of_friction);
+  const std::array<FrictionMemory<S, twists>, N> last = memory;
   std::array<S, N> share{};  // of the predecessors' total normal force
   std::array<int, N> heirs{};
   for (std::size_t p = 0; p < N; ++p) {
@@ -47,6 +82,7 @@ void inherit(const Friction& law_of_friction, const Force& force, const Regions&
     Vec3<S> friction = Vec3<S>::Zero(), point_T = Vec3<S>::Zero(), tip = Vec3<S>::Zero(),
             normal = Vec3<S>::Zero();
     S weight = S(0), strength = S(1), energy = S(0);
+    [[maybe_unused]] Vec3<S> torque = Vec3<S>::Zero();  // about the origin [N m]
     bool sliding = false;
     for (std::size_t p = 0; p < N; ++p) {
       if (!slot.inherits(p) || !(share[p] > S(0))) continue;
@@ -60,7 +96,12 @@ void inherit(const Friction& law_of_friction, const Force& force, const Regions&
       weight += w;
       const S stretched = tangential<S>(before.tip - before.origin, before.normal).norm();
       energy +=
-          fraction * before.slip.springs * Skew::energy(law_at(force, before.tip), last[p].depth, stretched);
+          fraction * before.slip.springs * skew.energy(law_at(force, before.tip), last[p].depth, stretched);
+      if constexpr (twists) {
+        const Twist<S>& twist = last[p].twist;
+        energy += fraction * twist.about_normal() * twist.angle / S(2);
+        torque += fraction * (twist.torque + before.tip.cross(last[p].friction));
+      }
       strength = (std::max)(strength, before.slip.strength);
       sliding = sliding || before.slip.sliding;
     }
@@ -70,25 +111,45 @@ void inherit(const Friction& law_of_friction, const Force& force, const Regions&
     const S depth = law.depth(normal_force);
     if (!(weight > S(0))) {  // new, or from regions without force
       anchor = Anchor<S>::begin(X, sums[k].centre(), sums[k].normal(), depth);
+      if constexpr (twists) memory[k].twist.release(X.rotation);
       continue;
     }
     anchor.point_T = point_T / weight;
     anchor.tip = tip / weight;
     // A normal across the force keeps all of it where regions on both sides of an edge merge; slips turn it
     // back.
+    if constexpr (twists) {  // what is left where opposite forces cancel has no direction
+      if (!(friction.norm() > S(64) * std::numeric_limits<S>::epsilon() * normal_force)) friction.setZero();
+    }
     const Vec3<S> along = unit_or<S>(friction, Vec3<S>::Zero());
     const S carried = friction.norm();
+    S joint = carried;  // with the torque: what the limit bounds
+    [[maybe_unused]] S about_normal = S(0);
     anchor.normal =
         unit_or<S>(tangential<S>(unit_or<S>(normal, sums[k].normal()), along), perpendicular<S>(along));
+    if constexpr (twists) {
+      const S lever = friction_lever(radius_of(sums[k].area()));
+      about_normal = anchor.normal.dot(torque - anchor.tip.cross(friction));
+      if (lever > S(0)) joint = std::hypot(carried, about_normal / lever);
+    }
     // A merged region's limit may be below the sum of its parts' (beta < 1): the excess wears off with
     // travel.
     const S limit =
         sliding ? law_of_friction.sliding_limit(normal_force) : law_of_friction.static_limit(normal_force);
     if (limit > S(0))
-      strength = (std::max)(strength, (std::min)(carried / limit, S(1) / (std::numeric_limits<S>::min)()));
+      strength = (std::max)(strength, (std::min)(joint / limit, S(1) / (std::numeric_limits<S>::min)()));
     anchor.slip = {sliding, strength};
-    const S stretch = carried_stretch<Skew>(law, depth, carried, energy, anchor.slip);
+    const S stretch = carried_stretch(skew, law, depth, carried, energy, anchor.slip);
     anchor.slip.slid = stretch;
+    if constexpr (twists) {
+      // As stiff as it takes to hold the torque with what energy is left.
+      const S left = energy - anchor.slip.springs * skew.energy(law, depth, stretch);
+      memory[k].twist.release(rotation);
+      if (left > std::numeric_limits<S>::epsilon() * energy && about_normal != S(0)) {
+        memory[k].twist.stiffness = about_normal * (about_normal / (S(2) * left));
+        set_twist(memory[k].twist, rotation, anchor.normal, -about_normal / memory[k].twist.stiffness, S(0));
+      }
+    }
     anchor.origin = anchor.tip + stretch * along + depth * anchor.normal;
   }
 }

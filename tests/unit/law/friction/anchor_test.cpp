@@ -26,8 +26,7 @@ struct Slider {
 
   AnchoredForce<double> move_to(const V& at) {
     X.translation = at;
-    return advance<ReturnMapping, ByComponents>(anchor, dry, law, X, V::UnitY(), V(X * anchor.point_T), depth,
-                                                normal_force);
+    return advance(anchor, dry, law, X, V::UnitY(), V(X * anchor.point_T), depth, normal_force);
   }
 };
 
@@ -102,9 +101,8 @@ TEST_CASE(
   const V centre = slider.X * slider.anchor.point_T + V(0, 0, 5e-3);
   for (int i = 1; i <= 5000; ++i) {
     slider.X.translation.x() += 1e-5;
-    (void)advance<ReturnMapping, ByComponents>(slider.anchor, dry, law, slider.X, normal,
-                                               V(centre + V(1e-5 * i, 0, 0)), slider.depth,
-                                               slider.normal_force);
+    (void)advance(slider.anchor, dry, law, slider.X, normal, V(centre + V(1e-5 * i, 0, 0)), slider.depth,
+                  slider.normal_force);
   }
   CHECK((slider.anchor.normal - normal).norm() <=
         1e-9);  // 50 mm of slip, relaxed over a stretch of about 1 mm

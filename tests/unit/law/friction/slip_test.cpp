@@ -20,7 +20,7 @@ template <class Slip, class Skew>
 SlipResult<double> push(SlipState<double>& state, double stretch, double before, double travel,
                         double normal_force = 1.0) {
   const double depth = law.depth(normal_force);
-  return Slip::template advance<Skew>(dry, law, {depth, normal_force, stretch, before, travel}, state);
+  return Slip::advance(dry, Skew{}, law, {depth, normal_force, stretch, before, travel}, state);
 }
 
 }  // namespace
