@@ -16,7 +16,9 @@
 #include <palpate/law/force/concept.hpp>
 
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -44,14 +46,51 @@ template <class Law>
   return integral(law, a, m, whole, level + 1) + integral(law, m, b, whole, level + 1);
 }
 
-template <class Example, Real S>
-struct ForceLawSuite {
-  using Law = decltype(Example::template make<S>(S(1), S(1)));
+/// A force law of whatever type, so that the suite is compiled once for all of them.
+template <Real T>
+class AnyLaw {
+ public:
+  template <class Law>
+  explicit AnyLaw(const Law& law) : law_(std::make_shared<const Of<Law>>(law)) {}
+  [[nodiscard]] T force(T depth) const { return law_->force(depth); }
+  [[nodiscard]] T stiffness(T depth) const { return law_->stiffness(depth); }
+  [[nodiscard]] T energy(T depth) const { return law_->energy(depth); }
+  [[nodiscard]] T depth(T force) const { return law_->depth(force); }
+  [[nodiscard]] T max_depth() const { return law_->max_depth(); }
 
-  Law law = Example::template make<S>(S(1), S(1));
-  decltype(Example::template make<S>(1.0L, 1.0L)) exact = Example::template make<S>(1.0L, 1.0L);
-  S limit =
-      static_cast<S>(Example::depth) < law.max_depth() ? static_cast<S>(Example::depth) : law.max_depth();
+ private:
+  struct Any {
+    virtual ~Any() = default;
+    virtual T force(T depth) const = 0;
+    virtual T stiffness(T depth) const = 0;
+    virtual T energy(T depth) const = 0;
+    virtual T depth(T force) const = 0;
+    virtual T max_depth() const = 0;
+  };
+  template <class Law>
+  struct Of final : Any {
+    explicit Of(const Law& l) : law(l) {}
+    T force(T depth) const override { return law.force(depth); }
+    T stiffness(T depth) const override { return law.stiffness(depth); }
+    T energy(T depth) const override { return law.energy(depth); }
+    T depth(T force) const override { return law.depth(force); }
+    T max_depth() const override { return law.max_depth(); }
+    Law law;
+  };
+  std::shared_ptr<const Any> law_;
+};
+
+template <Real S>
+struct ForceLawSuite {
+  using Law = AnyLaw<S>;
+
+  std::function<Law(S length, S force)> make;
+  AnyLaw<long double> exact;
+  double example_depth;
+  bool exact_units;
+  std::vector<S> kinks;
+  Law law = make(S(1), S(1));
+  S limit = static_cast<S>(example_depth) < law.max_depth() ? static_cast<S>(example_depth) : law.max_depth();
 
   void run() const {
     no_contact();
@@ -108,7 +147,7 @@ struct ForceLawSuite {
     for (const S depth : depths()) {
       const long double h = 1e-3L * static_cast<long double>(depth);
       bool smooth = static_cast<long double>(depth) + h < static_cast<long double>(law.max_depth());
-      for (const S kink : Example::template kinks<S>()) {
+      for (const S kink : kinks) {
         smooth = smooth && std::fabs(static_cast<long double>(kink - depth)) > h;
       }
       if (smooth) {
@@ -178,14 +217,14 @@ struct ForceLawSuite {
   // product and a sum may be rounded together in one of two places and not in the other.
   void units() const {
     const S length = S(1) / S(1024), force = S(8);  // D [length] F [force]
-    const Law other = Example::template make<S>(length, force);
+    const Law other = make(length, force);
     // Where not exact: a few roundings, of the size of the terms as in tangent_and_energy().
 #if defined(__FMA__)
     constexpr bool same_roundings = false;
 #else
     constexpr bool same_roundings = true;
 #endif
-    const long double tolerance = Example::exact_units && same_roundings ? 0 : ulps<S>(16);
+    const long double tolerance = exact_units && same_roundings ? 0 : ulps<S>(16);
     for (const S depth : depths()) {
       const S f = law.force(depth), k = law.stiffness(depth) + f / depth;
       CHECK_ABSOLUTE(other.force(depth / length) * force, f, tolerance * static_cast<long double>(f));
@@ -200,12 +239,21 @@ struct ForceLawSuite {
     }
     if (is_finite(law.max_depth())) CHECK_RELATIVE(other.max_depth() * length, law.max_depth(), tolerance);
     // Units that are not powers of 2: the parameters are rounded once more.
-    const Law decimal = Example::template make<S>(S(0.001), S(0.1));
+    const Law decimal = make(S(0.001), S(0.1));
     for (const S depth : depths()) {
       if (depth > S(0.99) * law.max_depth()) continue;
       CHECK_RELATIVE(decimal.force(depth / S(0.001)), law.force(depth) / S(0.1), ulps<S>(16));
     }
   }
 };
+
+template <class Example, Real S>
+[[nodiscard]] ForceLawSuite<S> force_law_suite() {
+  return {.make = [](S length, S force) { return AnyLaw<S>(Example::template make<S>(length, force)); },
+          .exact = AnyLaw<long double>(Example::template make<S>(1.0L, 1.0L)),
+          .example_depth = Example::depth,
+          .exact_units = Example::exact_units,
+          .kinks = Example::template kinks<S>()};
+}
 
 }  // namespace palpate::test

@@ -131,7 +131,7 @@ struct Case {
 };
 
 TEST_CASE_TEMPLATE_DEFINE("force law", C, force_law) {
-  test::ForceLawSuite<typename C::Example, typename C::Scalar>{}.run();
+  test::force_law_suite<typename C::Example, typename C::Scalar>().run();
 }
 
 #define PALPATE_FORCE_LAW_SUITE(...) \
