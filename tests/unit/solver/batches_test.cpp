@@ -7,7 +7,7 @@
 
 #include <support/check.hpp>
 #include <support/paths.hpp>
-#include <unit/solver/scene.hpp>
+#include "unit/solver/scene.hpp"
 
 using namespace palpate;
 using namespace palpate::test;

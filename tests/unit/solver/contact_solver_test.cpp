@@ -8,7 +8,7 @@
 #include <support/check.hpp>
 #include <support/no_heap.hpp>
 #include <support/paths.hpp>
-#include <unit/solver/scene.hpp>
+#include "unit/solver/scene.hpp"
 
 #include <cstring>
 #include <limits>

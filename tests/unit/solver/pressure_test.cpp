@@ -13,7 +13,7 @@
 #include <numbers>
 #include <string>
 
-#include "scene.hpp"
+#include "unit/solver/scene.hpp"
 
 using namespace palpate;
 using test::V;

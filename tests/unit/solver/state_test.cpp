@@ -10,7 +10,7 @@
 #include <support/check.hpp>
 #include <support/no_heap.hpp>
 #include <support/paths.hpp>
-#include <unit/solver/scene.hpp>
+#include "unit/solver/scene.hpp"
 
 #include <algorithm>
 #include <cstring>

@@ -12,7 +12,7 @@
 #include <numbers>
 #include <random>
 
-#include "scene.hpp"
+#include "unit/solver/scene.hpp"
 
 using namespace palpate;
 using test::V;
