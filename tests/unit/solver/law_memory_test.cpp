@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Force laws with memory in the solver: states of regions, kept where a contact ended, carried over mergers.
 #include <palpate/geometry/box.hpp>
+#include <palpate/geometry/triangle_mesh.hpp>
 #include <palpate/law/force/linear.hpp>
 #include <palpate/law/force/plastic.hpp>
 #include <palpate/law/force/relaxing.hpp>
@@ -90,6 +91,36 @@ TEST_CASE("a flat region is the law itself, at every size of its mesh") {
     CHECK_RELATIVE(solver.tick(at(0, 5e-3), 1e-3).wrench.force.y(), 1.0, 1e-9);
     CHECK(std::abs(solver.tick(at(0, 3.9e-3), 1e-3).wrench.force.y()) < 1e-12);
   }
+}
+
+TEST_CASE("under a mesh's pressure too a flat region is the law itself, and a tilting one has a potential") {
+  const ToolPoints<double> stamp(TriangleMesh<double>(Box<double>({.half = V(5e-3, 5e-3, 5e-3)}).mesh(400)),
+                                 {.contact_area = 1e-4});
+  ContactSolver<Box<double>, Putty, Frictionless<double>, SingleRegion<>> solver(
+      {.object = block, .tool = stamp, .force = putty});
+  ContactSolver<Box<double>, Spring, Frictionless<double>, SingleRegion<>> elastic(
+      {.object = block, .tool = stamp, .force = spring});
+  const auto share = [&](double depth) {
+    const Pose<double> X = at(0, depth - 5e-3);
+    return solver.tick(X, 1e-3).wrench.force.y() / elastic.tick(X).wrench.force.y();
+  };
+  CHECK_RELATIVE(share(7e-3), 3.0 / 7, 1e-9);
+  CHECK_RELATIVE(share(5e-3), 1.0 / 5, 1e-9);
+  Wrench<double> last{};
+  double tilt = 0, depth = 0, work = 0, gross = 0;
+  for (int i = 0; i <= 4000; ++i) {
+    const double t = 6.28318530717958648 * i / 4000, d = 5.2e-3 + 5e-4 * std::sin(t), phi = 0.1 * std::cos(t);
+    const Wrench<double> now = solver.tick(at(0, d - 5e-3, phi), 1e-3).wrench;
+    if (i > 0) {
+      const double done = -0.5 * (now.force.y() + last.force.y()) * (d - depth) +
+                          0.5 * (now.torque.z() + last.torque.z()) * (phi - tilt);
+      work += done;
+      gross += std::abs(done);
+    }
+    last = now, depth = d, tilt = phi;
+  }
+  CHECK(std::abs(work) <=
+        1e-4 * gross);  // points that the force's slope jumps at: 4000 steps and 400 vertices
 }
 
 TEST_CASE("each region has its own state: what one pin has dented the other has not") {
