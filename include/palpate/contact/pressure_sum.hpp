@@ -50,7 +50,7 @@ class alignas(64) PressureSum {
  public:
   using List = std::array<S, batch_size>;
 
-  /// At this pose of the tool, about its centre of mass [m], tool coordinates. Both outlive the sum.
+  /// At this pose of the tool, which outlives the sum, about its centre of mass [m], tool coordinates.
   PressureSum(const Pose<S>& pose, const Vec3<S>& centre_of_mass) noexcept
       : pose_(pose), centre_(centre_of_mass) {}
 
@@ -164,7 +164,7 @@ class alignas(64) PressureSum {
   List3 force_, torque_, moment_;  // force and torque: of the pressure, so less those on the tool
   List magnitude_, spread_;
   const Pose<S>& pose_;
-  const Vec3<S>& centre_;
+  Vec3<S> centre_;
   RegionSum<S> sum_{};  // what is not a plain sum: the deepest point (tool coordinates) and the count
   bool empty_ = true;
 };
