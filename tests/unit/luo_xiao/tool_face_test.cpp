@@ -189,7 +189,7 @@ void check_scene(const std::string& name, const Body& body, const Display& displ
   double depth = 0, D_least = 1;
   for (const auto& contact : pressed.contacts) {
     depth = std::max(depth, contact.depth);
-    D_least = std::min(D_least, contact.displacement.norm());
+    D_least = std::min(D_least, contact.depth);  // IV.B: D ends at the point of largest deformation
   }
   const double noise =
       static_cast<double>(test::ulps<D>(8)) * (body.upper() - body.lower()).norm();  // of position - position
