@@ -28,7 +28,7 @@ ContactSolver<Ellipsoid<double>, DuffingForce<double>, PowerLawFriction<double>,
 PALPATE_TEST_SOLVER
 ContactSolver<Ellipsoid<double>, DuffingForce<double>, PowerLawFriction<double>, Regions<4, AreaSharing>>;
 PALPATE_TEST_SOLVER
-    ContactSolver<Box<double>, DuffingForce<double>, PowerLawFriction<double>, Regions<4, AreaSharing>>;
+ContactSolver<Box<double>, DuffingForce<double>, PowerLawFriction<double>, Regions<4, AreaSharing>>;
 #undef PALPATE_TEST_SOLVER
 
 }  // namespace palpate

@@ -29,7 +29,8 @@ TEST_CASE("a tool on a fitted map feels what the field answers, anywhere on the 
   const auto fitted =
       response_map(field, body, {.radius = a, .depth = depth, .spacing = field.mesh().length / 3});
   CHECK(fitted.worst_rms < 0.02);  // as in response_curve_test.cpp
-  ContactSolver<Ellipsoid<double>, DuffingMap<double>> solver({.object = body, .tool = {}, .force = fitted.map});
+  ContactSolver<Ellipsoid<double>, DuffingMap<double>> solver(
+      {.object = body, .tool = {}, .force = fitted.map});
   ResponseTick<1> tick(field);
   const double beside =
       -0.03 + field.mesh().length;   // by the fixed region the stiffness rises within an edge
@@ -73,7 +74,8 @@ TEST_CASE("a ball on a fitted map feels what the field answers to a contact that
       ball_response_map(field, body, {.radius = ball, .depth = depth, .spacing = field.mesh().length / 3});
   // The worst is within the fixed region, where compliances are bounded and a curve has a kink.
   CHECK(fitted.worst_rms < 0.2);  // 0.17 met
-  ContactSolver<Ellipsoid<double>, HertzMap<double>> solver({.object = body, .tool = {}, .force = fitted.map});
+  ContactSolver<Ellipsoid<double>, HertzMap<double>> solver(
+      {.object = body, .tool = {}, .force = fitted.map});
   ResponseTick<1> tick(field);
   const double beside =
       -0.03 + field.mesh().length;  // by the fixed region the stiffness rises within an edge
