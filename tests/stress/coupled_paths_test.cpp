@@ -11,6 +11,7 @@
 #include <doctest/doctest.h>
 
 #include <support/paths.hpp>
+#include <support/pins.hpp>
 
 #include <cstdio>
 #include <numbers>
@@ -27,18 +28,6 @@ constexpr double two_pi = 2 * std::numbers::pi;
 template <class Body, class Coupling, class Sharing = AreaSharing>
 using Solver = ContactSolver<Body, DuffingForce<double>, Frictionless<double>, Regions<16, Sharing>,
                              NoDeformation<double>, AtContact, Coupling>;
-
-/// Pins of radius a with flat tips in y = 0, along x.
-ToolPoints<double> pins(const std::vector<double>& at) {
-  std::vector<V> points;
-  for (const double x : at)
-    for (int i = -5; i <= 5; ++i)
-      for (int k = -5; k <= 5; ++k)
-        if (i * i + k * k <= 25) points.push_back(V(x + a / 5 * i, 0, a / 5 * k));
-  const double area = std::numbers::pi * a * a * double(at.size()) / double(points.size());
-  return ToolPoints<double>(points, std::vector<double>(points.size(), area),
-                            {.contact_area = std::numbers::pi * a * a});
-}
 
 struct Work {
   double closed = 0, largest = 0;  // of the whole path, and of any part from its beginning [J]
@@ -101,11 +90,11 @@ void check_loops(const char* name, const Body& body, const ToolPoints<double>& t
 TEST_CASE("closed paths of coupled pins and of a wide tool: no energy but the path's own discretization") {
   const Box<double> box({.half = V(0.05, 0.05, 0.05)});
   const Ellipsoid<double> egg({.axes = V(0.06, 0.04, 0.05)});
-  const auto two = pins({-5e-3, 5e-3});
+  const auto two = test::pins(a, {-5e-3, 5e-3});
   check_loops("two pins, press", box, two, {0.0495, 2e-3, 0, 0});
   check_loops("two pins, press and rock", box, two, {0.049, 1e-3, 0.15, 0});
   check_loops("two pins, all", egg, two, {0.0385, 1e-3, 0.2, 4e-3});
-  check_loops("four pins, all", egg, pins({-15e-3, -5e-3, 5e-3, 15e-3}), {0.038, 2e-3, 0.1, 4e-3});
+  check_loops("four pins, all", egg, test::pins(a, {-15e-3, -5e-3, 5e-3, 15e-3}), {0.038, 2e-3, 0.1, 4e-3});
   const Sphere<double> ball({.radius = 0.02});
   const ToolPoints<double> wide(TriangleMesh<double>(ball.mesh(3000)), {.contact_area = 1e-5});
   check_loops("a wide ball, all", egg, wide, {0.0575, 1e-3, 0.3, 4e-3});

@@ -10,6 +10,7 @@
 
 #include <doctest/doctest.h>
 
+#include <support/pins.hpp>
 #include <support/response_fields.hpp>
 
 #include <algorithm>
@@ -26,18 +27,6 @@ constexpr double a = 3e-3;  // of a pin [m]
 
 using Pins = ContactSolver<Box<double>, DuffingForce<double>, Frictionless<double>, Regions<2, AreaSharing>,
                            NoDeformation<double>, AtContact, CompliantRegions<>>;
-
-/// Pins of radius a with flat tips in y = 0, along x.
-ToolPoints<double> pins(const std::vector<double>& at) {
-  std::vector<V> points;
-  for (const double x : at)
-    for (int i = -5; i <= 5; ++i)
-      for (int k = -5; k <= 5; ++k)
-        if (i * i + k * k <= 25) points.push_back(V(x + a / 5 * i, 0, a / 5 * k));
-  const double area = std::numbers::pi * a * a * double(at.size()) / double(points.size());
-  return ToolPoints<double>(points, std::vector<double>(points.size(), area),
-                            {.contact_area = std::numbers::pi * a * a});
-}
 
 }  // namespace
 
@@ -58,7 +47,7 @@ TEST_CASE("two pins on cubes of 60 and 100 mm: the response field's force for bo
         }
         const DuffingFit law = fit_duffing(response_curve(field, pressed[0]));
         Pins solver({.object = box,
-                     .tool = pins({-apart / 2, apart / 2}),
+                     .tool = test::pins(a, {-apart / 2, apart / 2}),
                      .force = DuffingForce<double>(law.params),
                      .contacts = {.distance = 0.4 * a}});
         for (const double depth : {1e-3, 1.9e-3}) {

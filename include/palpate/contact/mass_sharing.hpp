@@ -15,21 +15,6 @@
 
 namespace palpate {
 
-/// Pressure on the tool's surface (contact/pressure_sum.hpp): every point of the tool's face bears the
-/// pressure law(delta_i) / A_0 [Pa] along its own normal, so a region bears that of its area projected on the
-/// push. Reading of IV.C, because A_i counts a pin's walls as its face: needs a tool with vector areas
-/// (ToolPoints of a mesh). `weight` is the share of a point whose face looks straight against the push.
-struct SurfacePressure {
-  template <Real S>
-  [[nodiscard]] static constexpr S weight(S area, S nominal_area) noexcept {
-    return area / nominal_area;
-  }
-  template <Real S>
-  [[nodiscard]] static constexpr S norm(S /*points*/) noexcept {
-    return S(1);
-  }
-};
-
 /// m_i = m A_i / A_0, with A_i [m^2] the point's area on the tool and A_0 [m^2] the tool's nominal contact
 /// area. No equation: reading of IV.C, because m/n makes the force jump when a point joins with zero depth.
 /// Along the body's exit direction, whichever way the tool's face looks.
@@ -43,6 +28,12 @@ struct AreaSharing {
     return S(1);
   }
 };
+
+/// Pressure on the tool's surface (contact/pressure_sum.hpp): every point of the tool's face bears the
+/// pressure law(delta_i) / A_0 [Pa] along its own normal, so a region bears that of its area projected on the
+/// push. Reading of IV.C, because A_i counts a pin's walls as its face: needs a tool with vector areas
+/// (ToolPoints of a mesh). `weight` is the share of a point whose face looks straight against the push.
+struct SurfacePressure : AreaSharing {};
 
 /// m_i = m / n, as printed.
 struct EqualSharing {

@@ -46,9 +46,11 @@ struct alignas(64) PressureShare {
 /// Weights of the pressure centre are f_i = p_i max(0, -a_i.g_i), the force of a point along the exit: none
 /// is negative, so the centre lies among the points. Sums are in tool coordinates; total() turns them once.
 template <Real S>
-class alignas(64) PressureSum {
+class PressureSum : public detail::BatchSums<S> {
+  using Base = detail::BatchSums<S>;
+
  public:
-  using List = std::array<S, batch_size>;
+  using List = typename Base::List;
 
   /// At this pose of the tool, which outlives the sum, about its centre of mass [m], tool coordinates.
   PressureSum(const Pose<S>& pose, const Vec3<S>& centre_of_mass) noexcept
@@ -58,17 +60,10 @@ class alignas(64) PressureSum {
   /// True when some of them face along their exit: then add_backs() is due.
   [[nodiscard]] bool add(const PointBatch<S>& x, const PenetrationBatch<S>& in, const PressureShare<S>& share,
                          const List& p) noexcept {
-    if (empty_) clear();
+    this->begin_leaf();
     bool backs = false;
     for (std::size_t i = 0; i < batch_size; i += V::size()) backs |= add_part(i, x, in, share, p);
-    for (const S depth : in.depth) sum_.points += depth > S(0) ? 1u : 0u;
-    if (!(detail::max_of(in.depth) > sum_.deepest)) return backs;
-    for (std::size_t i = 0; i < in.depth.size(); ++i) {
-      if (!(in.depth[i] > sum_.deepest)) continue;
-      sum_.deepest = in.depth[i];
-      sum_.exit = Vec3<S>(in.gradient_x[i], in.gradient_y[i], in.gradient_z[i]);
-      sum_.position = Vec3<S>(x.x[i], x.y[i], x.z[i]);
-    }
+    this->count(x, in);
     return backs;
   }
 
@@ -94,32 +89,24 @@ class alignas(64) PressureSum {
   void add(const Vec3<S>& x, const Vec3<S>& f) noexcept { sum_.add(Vec3<S>(x - pose_ * centre_), f); }
 
   [[nodiscard]] const Pose<S>& pose() const noexcept { return pose_; }
-  /// True before the first leaf.
-  [[nodiscard]] bool empty() const noexcept { return empty_; }
   /// In object coordinates. Precondition: not empty().
   [[nodiscard]] RegionSum<S> total() const noexcept {
     RegionSum<S> sum = sum_;
     sum.position = pose_ * sum_.position;
-    sum.magnitude += total(magnitude_);
-    sum.spread += total(spread_);
-    sum.force -= pose_.rotation * total(force_);
-    sum.torque -= pose_.rotation * total(torque_);
-    sum.moment += pose_.rotation * total(moment_) + sum.magnitude * pose_.translation;
+    sum.magnitude += Base::total(magnitude_);
+    sum.spread += Base::total(spread_);
+    sum.force -= pose_.rotation * Base::total(force_);
+    sum.torque -= pose_.rotation * Base::total(torque_);
+    sum.moment += pose_.rotation * Base::total(moment_) + sum.magnitude * pose_.translation;
     return sum;
   }
 
  private:
-  using V = detail::batch_group<S>;
-  using Vector = detail::SimdVec3<V>;
-  struct List3 {
-    List x, y, z;
-    PALPATE_INLINE void add(std::size_t i, const Vector& a) noexcept {
-      PressureSum::add(x, i, a.x), PressureSum::add(y, i, a.y), PressureSum::add(z, i, a.z);
-    }
-  };
-  static PALPATE_INLINE void add(List& list, std::size_t i, const V& a) noexcept {
-    (V(&list[i]) + a).copy_to(&list[i]);
-  }
+  using V = typename Base::V;
+  using Vector = typename Base::Vector;
+  // Force and torque: of the pressure, so less those on the tool. sum_.position: tool coordinates.
+  using Base::force_, Base::torque_, Base::moment_, Base::magnitude_, Base::spread_, Base::sum_;
+
   [[nodiscard]] static PALPATE_INLINE Vector area(const PressureShare<S>& share, std::size_t i) noexcept {
     return {V(&share.x[i]), V(&share.y[i]), V(&share.z[i])};
   }
@@ -140,33 +127,13 @@ class alignas(64) PressureSum {
     force_.add(i, p * a);
     torque_.add(i, p * Vector{V(&share.mx[i]), V(&share.my[i]), V(&share.mz[i])});
     moment_.add(i, f * Vector{V(&x.x[i]), V(&x.y[i]), V(&x.z[i])});
-    add(magnitude_, i, f);
-    add(spread_, i, f * p);
+    Base::add(magnitude_, i, f);
+    Base::add(spread_, i, f * p);
     return detail::any_of(p * (w * V(&share.per_area[i]) - wall) > V{});
   }
 
-  [[nodiscard]] static S total(const List& list) noexcept {
-    return detail::reduce(detail::Simd<S, static_cast<int>(batch_size)>(list.data()));
-  }
-  [[nodiscard]] static Vec3<S> total(const List3& list) noexcept {
-    return {total(list.x), total(list.y), total(list.z)};
-  }
-
-  // Not in the constructor: a tool in free air needs none of it.
-  void clear() noexcept {
-    for (List3* const list : {&force_, &torque_, &moment_})
-      list->x.fill(S(0)), list->y.fill(S(0)), list->z.fill(S(0));
-    magnitude_.fill(S(0));
-    spread_.fill(S(0));
-    empty_ = false;
-  }
-
-  List3 force_, torque_, moment_;  // force and torque: of the pressure, so less those on the tool
-  List magnitude_, spread_;
   const Pose<S>& pose_;
   Vec3<S> centre_;
-  RegionSum<S> sum_{};  // what is not a plain sum: the deepest point (tool coordinates) and the count
-  bool empty_ = true;
 };
 
 }  // namespace palpate

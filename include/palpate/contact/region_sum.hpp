@@ -174,24 +174,48 @@ class PointForce {
   S normal_force_ = S(0);
 };
 
-/// A RegionSum in the making, a leaf of `batch_size` points at a time. Entry i of every list sums point i of
-/// all leaves; total() adds the entries up.
+namespace detail {
+/// What sums of a region in the making have in common. Entry i of every list sums point i of all leaves.
 template <Real S>
-class alignas(64) LeafSum {
+class alignas(64) BatchSums {
  public:
   using List = std::array<S, batch_size>;
 
-  /// About this centre of mass [m].
-  explicit LeafSum(const Vec3<S>& centre_of_mass) noexcept : centre_(centre_of_mass) {}
+  /// True before the first leaf.
+  [[nodiscard]] bool empty() const noexcept { return empty_; }
 
-  /// Adds points at x with forces f [N] along their exit directions; f is 0 and the depth <= 0 for those that
-  /// do not belong. `per_area`: 1/A_i [1/m^2].
-  void add(const PointBatch<S>& x, const PenetrationBatch<S>& in, const List& f,
-           const List& per_area) noexcept {
-    if (empty_) clear();
-    for (std::size_t i = 0; i < batch_size; i += V::size()) add_part(i, x, in, f, per_area);
+ protected:
+  using V = batch_group<S>;
+  using Vector = SimdVec3<V>;
+  struct List3 {
+    List x, y, z;
+    PALPATE_INLINE void add(std::size_t i, const Vector& a) noexcept {
+      BatchSums::add(x, i, a.x), BatchSums::add(y, i, a.y), BatchSums::add(z, i, a.z);
+    }
+  };
+  static PALPATE_INLINE void add(List& list, std::size_t i, const V& a) noexcept {
+    (V(&list[i]) + a).copy_to(&list[i]);
+  }
+  [[nodiscard]] static S total(const List& list) noexcept {
+    return reduce(Simd<S, static_cast<int>(batch_size)>(list.data()));
+  }
+  [[nodiscard]] static Vec3<S> total(const List3& list) noexcept {
+    return {total(list.x), total(list.y), total(list.z)};
+  }
+
+  /// Before each leaf. Not in the constructor: a tool in free air needs none of it.
+  PALPATE_INLINE void begin_leaf() noexcept {
+    if (!empty_) return;
+    for (List3* const list : {&force_, &torque_, &moment_})
+      list->x.fill(S(0)), list->y.fill(S(0)), list->z.fill(S(0));
+    magnitude_.fill(S(0));
+    spread_.fill(S(0));
+    empty_ = false;
+  }
+  /// Counts a leaf's points and keeps the deepest.
+  PALPATE_INLINE void count(const PointBatch<S>& x, const PenetrationBatch<S>& in) noexcept {
     for (const S depth : in.depth) sum_.points += depth > S(0) ? 1u : 0u;
-    if (!(detail::max_of(in.depth) > sum_.deepest)) return;
+    if (!(max_of(in.depth) > sum_.deepest)) return;
     for (std::size_t i = 0; i < in.depth.size(); ++i) {
       if (!(in.depth[i] > sum_.deepest)) continue;
       sum_.deepest = in.depth[i];
@@ -200,41 +224,57 @@ class alignas(64) LeafSum {
     }
   }
 
+  List3 force_, torque_, moment_;
+  List magnitude_, spread_;
+  RegionSum<S> sum_{};  // what is not a plain sum: the deepest point and the count
+
+ private:
+  bool empty_ = true;
+};
+}  // namespace detail
+
+/// A RegionSum in the making, a leaf of `batch_size` points at a time; total() adds the entries up.
+template <Real S>
+class LeafSum : public detail::BatchSums<S> {
+  using Base = detail::BatchSums<S>;
+
+ public:
+  using List = typename Base::List;
+
+  /// About this centre of mass [m].
+  explicit LeafSum(const Vec3<S>& centre_of_mass) noexcept : centre_(centre_of_mass) {}
+
+  /// Adds points at x with forces f [N] along their exit directions; f is 0 and the depth <= 0 for those that
+  /// do not belong. `per_area`: 1/A_i [1/m^2].
+  void add(const PointBatch<S>& x, const PenetrationBatch<S>& in, const List& f,
+           const List& per_area) noexcept {
+    this->begin_leaf();
+    for (std::size_t i = 0; i < batch_size; i += V::size()) add_part(i, x, in, f, per_area);
+    this->count(x, in);
+  }
+
   /// Adds a force [N] at x [m] that belongs to no point.
   void add(const Vec3<S>& x, const Vec3<S>& f) noexcept { sum_.add(Vec3<S>(x - centre_), f); }
 
-  /// True before the first leaf.
-  [[nodiscard]] bool empty() const noexcept { return empty_; }
   /// Precondition: not empty().
   [[nodiscard]] RegionSum<S> total() const noexcept {
     RegionSum<S> sum = sum_;
-    sum.force += total(force_);
-    sum.torque += total(torque_);
-    sum.moment += total(moment_);
-    sum.magnitude += total(magnitude_);
-    sum.spread += total(spread_);
+    sum.force += Base::total(force_);
+    sum.torque += Base::total(torque_);
+    sum.moment += Base::total(moment_);
+    sum.magnitude += Base::total(magnitude_);
+    sum.spread += Base::total(spread_);
     return sum;
   }
 
  private:
-  using V = detail::batch_group<S>;
-  struct List3 {
-    List x, y, z;
-    [[nodiscard]] PALPATE_INLINE detail::SimdVec3<V> at(std::size_t i) const noexcept {
-      return {V(&x[i]), V(&y[i]), V(&z[i])};
-    }
-    PALPATE_INLINE void add(std::size_t i, const detail::SimdVec3<V>& a) noexcept {
-      LeafSum::add(x, i, a.x), LeafSum::add(y, i, a.y), LeafSum::add(z, i, a.z);
-    }
-  };
-  static PALPATE_INLINE void add(List& list, std::size_t i, const V& a) noexcept {
-    (V(&list[i]) + a).copy_to(&list[i]);
-  }
+  using V = typename Base::V;
+  using Vector = typename Base::Vector;
+  using Base::force_, Base::torque_, Base::moment_, Base::magnitude_, Base::spread_, Base::sum_;
 
   /// The points from i on, as many as V holds.
   PALPATE_INLINE void add_part(std::size_t i, const PointBatch<S>& x, const PenetrationBatch<S>& in,
                                const List& forces, const List& per_area) noexcept {
-    using Vector = detail::SimdVec3<V>;
     const Vector p{V(&x.x[i]), V(&x.y[i]), V(&x.z[i])};
     const V f(&forces[i]);
     const Vector F = f * Vector{V(&in.gradient_x[i]), V(&in.gradient_y[i]), V(&in.gradient_z[i])};
@@ -242,31 +282,11 @@ class alignas(64) LeafSum {
     force_.add(i, F);
     torque_.add(i, cross(arm, F));
     moment_.add(i, f * p);
-    add(magnitude_, i, f);
-    add(spread_, i, f * (f * V(&per_area[i])));
+    Base::add(magnitude_, i, f);
+    Base::add(spread_, i, f * (f * V(&per_area[i])));
   }
 
-  [[nodiscard]] static S total(const List& list) noexcept {
-    return detail::reduce(detail::Simd<S, static_cast<int>(batch_size)>(list.data()));
-  }
-  [[nodiscard]] static Vec3<S> total(const List3& list) noexcept {
-    return {total(list.x), total(list.y), total(list.z)};
-  }
-
-  // Not in the constructor: a tool in free air needs none of it.
-  void clear() noexcept {
-    for (List3* const list : {&force_, &torque_, &moment_})
-      list->x.fill(S(0)), list->y.fill(S(0)), list->z.fill(S(0));
-    magnitude_.fill(S(0));
-    spread_.fill(S(0));
-    empty_ = false;
-  }
-
-  List3 force_, torque_, moment_;
-  List magnitude_, spread_;
   Vec3<S> centre_;
-  RegionSum<S> sum_{};  // what is not a plain sum: the deepest point and the count
-  bool empty_ = true;
 };
 
 }  // namespace palpate

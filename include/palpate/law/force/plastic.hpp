@@ -4,7 +4,7 @@
 /// @file  Decorator: a force law that yields, and leaves a dent that stays.
 
 #include <palpate/core/error.hpp>
-#include <palpate/law/force/concept.hpp>
+#include <palpate/law/force/detail/with_law.hpp>
 #include <palpate/law/force/linear.hpp>
 
 #include <algorithm>
@@ -35,13 +35,13 @@ namespace palpate {
 /// parameters: SetupError. Does not model: recovery, the rim that rises beside a dent, ploughing. No
 /// equation: IV.A names "elastic, plastic, etc."; source: [simo1998] ch. 1.
 template <ForceLaw Law>
-class PlasticForce {
-  static_assert(!RateDependentForceLaw<Law> && !StatefulForceLaw<Law>,
-                "PlasticForce would drop the law's rate term or state");
+class PlasticForce : public detail::WithLaw<Law> {
+  using Base = detail::WithLaw<Law>;
   using S = typename Law::Scalar;
 
  public:
   using Scalar = S;
+  using Base::force, Base::stiffness, Base::energy, Base::depth;
 
   struct Params {
     S yield_force;       ///< F_y [N] > 0
@@ -52,7 +52,7 @@ class PlasticForce {
     S set = S(0);  ///< s [m]
   };
 
-  PlasticForce(Law law, Params params) : law_(std::move(law)), p_(params) {
+  PlasticForce(Law law, Params params) : Base(std::move(law)), p_(params) {
     require_positive(p_.yield_force, "PlasticForce", "yield_force [N] must be > 0 and finite");
     require_non_negative(p_.hardening, "PlasticForce", "hardening [N/m] must be >= 0 and finite");
     require_positive(p_.extent, "PlasticForce", "extent [m] must be > 0 and finite");
@@ -94,24 +94,12 @@ class PlasticForce {
     return {(std::max)(depth - law_.depth((std::min)(left, S(1)) * law_.force(depth)), S(0))};
   }
 
-  /// The law's own: what was never touched, below yield.
-  [[nodiscard]] S force(S depth) const noexcept { return law_.force(depth); }
-  [[nodiscard]] S stiffness(S depth) const noexcept { return law_.stiffness(depth); }
-  [[nodiscard]] S energy(S depth) const noexcept { return law_.energy(depth); }
-  [[nodiscard]] S depth(S force) const noexcept { return law_.depth(force); }
-  [[nodiscard]] S max_depth() const noexcept { return law_.max_depth(); }
-  template <class V>
-    requires HasForces<Law, V>
-  [[nodiscard]] V forces(const V& depth) const noexcept {
-    return law_.forces(depth);
-  }
-
   [[nodiscard]] S extent() const noexcept { return p_.extent; }
   [[nodiscard]] const Params& params() const noexcept { return p_; }
-  [[nodiscard]] const Law& law() const noexcept { return law_; }
 
  private:
-  Law law_;
+  using Base::law_;
+
   Params p_;
   S yield_depth_;  // D_y [m]
 };

@@ -4,7 +4,7 @@
 /// @file  Decorator: a force law that relaxes, after a Prony series.
 
 #include <palpate/core/error.hpp>
-#include <palpate/law/force/concept.hpp>
+#include <palpate/law/force/detail/with_law.hpp>
 #include <palpate/law/force/linear.hpp>
 
 #include <algorithm>
@@ -42,14 +42,14 @@ namespace palpate {
 /// no time passes. Bad parameters: SetupError. No equation: IV.A; source: [fung1993] ch. 7, [simo1998] ch.
 /// 10.
 template <ForceLaw Law, std::size_t N = 1>
-class RelaxingForce {
+class RelaxingForce : public detail::WithLaw<Law> {
+  using Base = detail::WithLaw<Law>;
   static_assert(N >= 1, "a Prony series has a term");
-  static_assert(!RateDependentForceLaw<Law> && !StatefulForceLaw<Law>,
-                "RelaxingForce would drop the law's rate term or state");
   using S = typename Law::Scalar;
 
  public:
   using Scalar = S;
+  using Base::force, Base::stiffness, Base::energy, Base::depth;
 
   struct Term {
     S part;  ///< g_i [-] > 0
@@ -64,7 +64,7 @@ class RelaxingForce {
     std::array<S, N> relaxed{};  ///< s_i [N]
   };
 
-  RelaxingForce(Law law, Params params) : law_(std::move(law)), p_(params) {
+  RelaxingForce(Law law, Params params) : Base(std::move(law)), p_(params) {
     S sum = S(0);
     for (const Term& term : p_.terms) {
       require_positive(term.part, "RelaxingForce", "part [-] of a term must be > 0 and finite");
@@ -136,23 +136,12 @@ class RelaxingForce {
     return state;
   }
 
-  /// The law's own: what was never touched, at once.
-  [[nodiscard]] S force(S depth) const noexcept { return law_.force(depth); }
-  [[nodiscard]] S stiffness(S depth) const noexcept { return law_.stiffness(depth); }
-  [[nodiscard]] S energy(S depth) const noexcept { return law_.energy(depth); }
-  [[nodiscard]] S depth(S force) const noexcept { return law_.depth(force); }
-  [[nodiscard]] S max_depth() const noexcept { return law_.max_depth(); }
-  template <class V>
-    requires HasForces<Law, V>
-  [[nodiscard]] V forces(const V& depth) const noexcept {
-    return law_.forces(depth);
-  }
-
   [[nodiscard]] S extent() const noexcept { return p_.extent; }
   [[nodiscard]] const Params& params() const noexcept { return p_; }
-  [[nodiscard]] const Law& law() const noexcept { return law_; }
 
  private:
+  using Base::law_;
+
   // sum g_i s_i [N]
   S lost(const State& state) const noexcept {
     S sum = S(0);
@@ -169,7 +158,6 @@ class RelaxingForce {
     return z / S(2) * sum;
   }
 
-  Law law_;
   Params p_;
 };
 

@@ -66,9 +66,9 @@ class RegionSkeletons {
   static constexpr double min_distance = 1e-3;
 
   struct Result {
-    FixedVector<Load, M> loads;                ///< per contact: its beams to the extremal points, and d_j
-    FixedVector<Vec3<Scalar>, M> from_others;  ///< f_j [N]: to be added to the force on the tool at j
-    bool shared = false;                       ///< false: bad input; all forces are 0
+    FixedVector<Load, M, Spare::undefined> loads;  ///< per contact: its beams to the extremal points, and d_j
+    FixedVector<Vec3<Scalar>, M> from_others;      ///< f_j [N]: to be added to the force on the tool at j
+    bool shared = false;                           ///< false: bad input; all forces are 0
   };
 
   explicit RegionSkeletons(const K& skeleton) : skeleton_(skeleton) {}

@@ -35,9 +35,9 @@ struct SkeletonLoad {
     S length;       ///< l_i [m]
     Vec3<S> force;  ///< F_i [N]; sum F_i = F
   };
-  FixedVector<Beam, N> beams;              ///< one per extremal point, in their order
-  Vec3<S> displacement = Vec3<S>::Zero();  ///< d of the common end [m]
-  double total_length = 0;                 ///< sum l_i [m]: gives the section
+  FixedVector<Beam, N, Spare::undefined> beams;  ///< one per extremal point, in their order
+  Vec3<S> displacement = Vec3<S>::Zero();        ///< d of the common end [m]
+  double total_length = 0;                       ///< sum l_i [m]: gives the section
   bool shared = false;  ///< false: bad input, or no unique answer (`PlanarRatios`); all F_i are 0
 };
 
