@@ -110,6 +110,49 @@ TEST_CASE("splitting: the larger piece lives on, the other names its parent") {
   CHECK(line.slot_at(6).inherits(0));
 }
 
+TEST_CASE("ties: pieces of a size, regions of a size: the earlier piece and the lower slot live on") {
+  Line line(20);
+  line.touch({2, 3, 4, 5, 6});
+  auto id = line.slot_at(4).id;
+  line.touch({2, 3, 5, 6});  // two each
+  CHECK(line.slot_at(2).id == id);
+  CHECK(line.slot_at(5).id != id);
+  line.touch({2, 3, 4, 5, 6});
+  id = line.slot_at(4).id;
+  CHECK(line.slot_at(4).merged == 0b11);
+  line.touch({5, 6, 2, 3});  // the other way round
+  CHECK(line.slot_at(5).id == id);
+  CHECK(line.slot_at(2).id != id);
+
+  Line merging(20);
+  merging.touch({8, 9, 2, 3});
+  const auto lower = merging.slot_at(8).id;  // slot 0: it came first
+  merging.touch({2, 3, 4, 5, 6, 7, 8, 9});
+  CHECK(merging.slot_at(2).id == lower);
+
+  Line between(20);  // a new piece with one point of either region
+  between.touch({2, 3, 4, 5, 7, 8, 9, 10});
+  REQUIRE(between.regions() == 2);
+  between.touch({2, 3, 5, 6, 7, 9, 10});
+  REQUIRE(between.regions() == 3);
+  CHECK(between.slot_at(6).merged == 0);
+  CHECK(between.slot_at(6).parent == 0);
+}
+
+TEST_CASE("a region that two others end in keeps its own slot, and theirs are free") {
+  Line line(20);
+  line.touch({1, 2, 5, 6, 7, 12, 13, 14, 15});
+  REQUIRE(line.regions() == 3);
+  const auto large = line.slot_at(12).id;
+  line.touch({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15});
+  CHECK(line.regions() == 1);
+  CHECK(line.slot_at(1).id == large);
+  CHECK(line.slot_at(1).merged == 0b111);
+  line.touch({1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 18});  // a new one has a slot of its own
+  CHECK(line.regions() == 2);
+  CHECK(line.slot_at(18).id != large);
+}
+
 TEST_CASE("a roll that exchanges every point within r is still the same region") {
   Line line(20);
   line.touch({4, 5});
@@ -129,6 +172,8 @@ TEST_CASE("more regions than there is room for: the surplus joins the nearest, a
   CHECK(line.slot_at(19).id == line.slot_at(12).id);
   CHECK(line.touch({0, 4, 8, 12, 19}) == Status::region_overflow);  // still so while nothing changes
   CHECK(line.touch({0, 4, 8, 12}) == Status::ok);
+  CHECK(line.touch({0, 4, 8, 12, 2}) == Status::region_overflow);  // as far from 0 as from 4: the lower slot
+  CHECK(line.slot_at(2).id == line.slot_at(0).id);
 }
 
 TEST_CASE("random sets: regions are the connected components, whatever came before") {

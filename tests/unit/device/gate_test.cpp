@@ -69,6 +69,15 @@ TEST_CASE_TEMPLATE("gate, start: zero for arm_after, then a linear ramp, then th
   CHECK(gate.status() == GateStatus::armed);
 }
 
+TEST_CASE_TEMPLATE("gate, start: torque rises as force does", S, float, double) {
+  Gate<S> gate({.max_torque_rate = infinity<S>, .arm_after = S(0), .ramp_time = S(0.5), .max_gap = S(0.25)});
+  Wrench<S> w;
+  w.torque = Vec3<S>(S(0.125), S(0), S(-0.0625));
+  for (int i = 0; i < 32; ++i)
+    CHECK(gate.pass(w, false, S(1) / S(64)).torque == Vec3<S>(w.torque * (S(i) / S(32))));
+  CHECK(gate.pass(w, false, S(1) / S(64)).torque == w.torque);
+}
+
 TEST_CASE_TEMPLATE("gate, start inside an object: no force until the tool has been pulled free", S, float,
                    double) {
   Gate<S> gate;
@@ -185,6 +194,34 @@ TEST_CASE_TEMPLATE("gate, heat budget: peaks pass, a force held for ever ends at
   CHECK(has(gate.status(), GateStatus::heat_limited));
   for (int i = 0; i < 5000; ++i) (void)gate.pass({}, false, ms<S>);
   CHECK(gate.status() == GateStatus::armed);  // cooled
+}
+
+TEST_CASE_TEMPLATE("gate, heat budget: it is the mean square that counts", S, float, double) {
+  // L N in one tick of four: q = L^2/4, and L = 2 - (2 q - 1): L = sqrt(7) - 1. By its mean, L/4, it would stay 2.
+  auto gate = armed<S>(
+      {.max_force = S(2), .continuous_force = S(1), .heat_time = S(2), .max_force_rate = infinity<S>});
+  S felt = S(0);
+  for (int i = 0; i < 60000; ++i) {
+    const S f = gate.pass(push<S>(i % 4 == 0 ? S(2) : S(0)), true, ms<S>).force.x();
+    if (i % 4 == 0) felt = f;
+  }
+  CHECK_RELATIVE(felt, std::sqrt(7.0) - 1,
+                 2e-3);  // q goes up and down by 3/4 L^2 dt/heat_time within four ticks
+}
+
+TEST_CASE_TEMPLATE("gate, heat budget: a trip does not cool the motors", S, float, double) {
+  auto gate = armed<S>({.max_force = S(3),
+                        .continuous_force = S(1),
+                        .heat_time = S(2),
+                        .max_force_rate = infinity<S>,
+                        .arm_after = S(0),
+                        .ramp_time = S(0)});
+  for (int i = 0; i < 40000; ++i) (void)gate.pass(push<S>(5), true, ms<S>);
+  gate.disarm();
+  CHECK(gate.pass(push<S>(5), false, ms<S>).force == Vec3<S>::Zero());
+  // Two ticks without force take q from 1 to 1 - dt/heat_time: the limit is still 1 N and next to nothing.
+  CHECK_ABSOLUTE(gate.pass(push<S>(5), false, ms<S>).force.x(), 1, 0.01);
+  CHECK(has(gate.status(), GateStatus::heat_limited));
 }
 
 TEST_CASE_TEMPLATE("gate, one tick: the output is no further apart than the inputs", S, float, double) {

@@ -39,9 +39,10 @@ struct Viscous {
 /// | D'     | `rate`    | m/s                                        | > 0 going in; NaN, inf: left out |
 /// | c or b | `damping` | HuntCrossley: s/m; Viscous: N s/m (2 mu m) | >= 0                             |
 ///
-/// The total is never negative: damping does not pull the tool in. `force(depth)`, tangent, energy and
-/// inverse are the law's own (rate 0). Bad parameters: SetupError. Does not model: the inertia term x'' of
-/// (1), which belongs to the simulated tool; memory (creep, relaxation). Source: [luo2005] eq. (1).
+/// The total is never negative: damping does not pull the tool in. Left out, too, is a rate so large that
+/// the total is out of the scalar's range. `force(depth)`, tangent, energy and inverse are the law's own
+/// (rate 0). Bad parameters: SetupError. Does not model: the inertia term x'' of (1), which belongs to the
+/// simulated tool; memory (creep, relaxation). Source: [luo2005] eq. (1).
 template <ForceLaw Law, class Form = HuntCrossley>
 class DampedForce {
   static_assert(!StatefulForceLaw<Law>, "DampedForce would drop the law's state");
@@ -63,7 +64,8 @@ class DampedForce {
   [[nodiscard]] constexpr S force(S depth, S rate) const noexcept {
     const S elastic = law_.force(depth);
     if (!is_positive(depth) || !is_finite(rate)) return elastic;
-    return (std::max)(Form::total(elastic, rate, p_.damping), S(0));
+    const S total = Form::total(elastic, rate, p_.damping);
+    return is_finite(total) ? (std::max)(total, S(0)) : elastic;
   }
   /// The law's F [N] at depth D [m], at rest.
   [[nodiscard]] constexpr S force(S depth) const noexcept { return law_.force(depth); }

@@ -63,6 +63,10 @@ TEST_CASE_TEMPLATE("damped: hunt-crossley has no step on entry, the literal visc
     CHECK(hunt_crossley.force(d, rate) == law.force(d));
     CHECK(viscous.force(d, rate) == law.force(d));
   }
+  // So are rates that only a step of next to no time can have: the total would not be a number.
+  const S absurd = std::numeric_limits<S>::max();
+  CHECK(DampedForce(law, {.damping = S(3)}).force(d, absurd) == law.force(d));
+  CHECK(viscous.force(d, absurd) == law.force(d));
   // Leaving fast: never pulls. Out of contact: nothing, at any rate.
   CHECK(hunt_crossley.force(d, S(-10)) == S(0));
   CHECK(viscous.force(d, S(-10)) == S(0));

@@ -69,12 +69,37 @@ TEST_CASE(
   const auto rest = push<ReturnMapping, ByComponents>(state, stretch, stretch, 0);
   CHECK(state.sliding);  // a stop, or one step of an encoder, is not a reversal
   CHECK_RELATIVE(rest.force.tangential, 0.3, test::ulps<double>(16));
+  const auto little = push<ReturnMapping, ByComponents>(state, 0.91 * stretch, stretch, 0.09 * stretch);
+  CHECK(state.sliding);  // nor is less than a tenth
+  CHECK(little.force.tangential == law.force(0.91 * stretch));
   const auto back = push<ReturnMapping, ByComponents>(state, 0.89 * stretch, stretch, 0.11 * stretch);
   CHECK_FALSE(state.sliding);
   CHECK(back.force.tangential == law.force(0.89 * stretch));  // elastic all the way
   const auto again = push<ReturnMapping, ByComponents>(state, law.depth(0.55), 0.89 * stretch, 1e-4);
   CHECK_FALSE(state.sliding);
   CHECK_RELATIVE(again.force.tangential, 0.55, test::ulps<double>(16));
+}
+
+TEST_CASE("return mapping: springs of merged regions push together, and a slip lets the surplus go first") {
+  const double stretch = law.depth(0.2);
+  SlipState<double> state;
+  state.springs = 2;
+  const auto stuck = push<ReturnMapping, ByComponents>(state, stretch, stretch, 0);
+  CHECK_FALSE(state.sliding);
+  CHECK_RELATIVE(stuck.force.tangential, 0.4, test::ulps<double>(16));
+  CHECK(state.springs == 2);
+  // 2 x 0.4 N is above the static limit, 0.6 N: 1.5 springs at the same stretch are not.
+  const double further = law.depth(0.4);
+  const auto slips = push<ReturnMapping, ByComponents>(state, further, further, 0);
+  CHECK(state.sliding);
+  CHECK(slips.stretch == further);
+  CHECK_RELATIVE(state.springs, 1.5, test::ulps<double>(16));
+  CHECK_RELATIVE(slips.force.tangential, 0.6, test::ulps<double>(16));
+  // Far on, one spring is left at the sliding limit.
+  double at = further;
+  for (int i = 0; i < 20000; ++i) at = push<ReturnMapping, ByComponents>(state, at + 1e-6, at, 1e-6).stretch;
+  CHECK(state.springs == 1);
+  CHECK_RELATIVE(law.force(at), 0.3, 1e-6);
 }
 
 TEST_CASE("literal shift: as printed, D_t keeps its last value and friction drops at once") {
