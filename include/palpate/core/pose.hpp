@@ -34,7 +34,8 @@ template <Real S>
   const Vec3<S> x = X.rotation.col(0), y = X.rotation.col(1), z = X.rotation.col(2);
   // Entries below 2 first, so that nothing overflows after that.
   if (!within(X.translation, limit) || !within(x, S(2)) || !within(y, S(2)) || !within(z, S(2))) return false;
-  return within(Vec3<S>(x.squaredNorm() - S(1), y.squaredNorm() - S(1), z.squaredNorm() - S(1)), tolerance) &&
+  // Of z the length needs no test: it is x cross y.
+  return within(Vec3<S>(x.squaredNorm() - S(1), y.squaredNorm() - S(1), x.dot(y)), tolerance) &&
          within(x.cross(y) - z, tolerance);
 }
 
