@@ -120,10 +120,10 @@ TEST_CASE_TEMPLATE("tool points: a pose that is_usable() just lets pass loses no
   int tried = 0;
   for (int i = 0; i < 4000 && tried < 300; ++i) {
     Pose<S> X{random_rotation<S>(random), random_vector<S>(random, S(0.05))};
-    // Two axes leaning to each other by up to 2 degrees, which the tolerance on their product cannot see.
+    // Two axes too long and leaning to each other, by nearly the tolerance of 1e-3.
     const Vec3<S> x = X.rotation.col(0), y = X.rotation.col(1);
-    X.rotation.col(0) = (x + S(0.02) * y).normalized() * S(1.0004L);
-    X.rotation.col(1) = (y + S(0.02) * x).normalized() * S(1.0004L);
+    X.rotation.col(0) = (x + S(4.5e-4L) * y).normalized() * S(1.0004L);
+    X.rotation.col(1) = (y + S(4.5e-4L) * x).normalized() * S(1.0004L);
     if (!is_usable(X)) continue;
     ++tried;
     (void)check_walk(tool, X, body);
