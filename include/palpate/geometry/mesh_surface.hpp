@@ -51,33 +51,7 @@ class MeshSurface {
   };
 
   explicit MeshSurface(const TriangleMesh<S>& mesh) : MeshSurface(mesh, Params{}) {}
-  MeshSurface(const TriangleMesh<S>& mesh, const Params& params)
-      : crease_(checked(params)),
-        bvh_(mesh.data()),
-        normals_(mesh, crease_),
-        vertex_normals_(mesh.vertex_normals()),
-        lower_(mesh.lower()),
-        upper_(mesh.upper()),
-        centroid_(mesh.centroid()),
-        volume_(mesh.volume()),
-        edge_(detail::mean_edge(mesh.area(), mesh.triangles().size())),
-        blend_(edge_),
-        grid_(
-            lower_, upper_,
-            (std::clamp)(4 * mesh.triangles().size(), std::size_t(4096), std::size_t(1000000)),
-            [this](const Vec3<S>& x, std::uint32_t& triangle) {
-              const Nearest near = bvh_.near(x, triangle, detail::DistanceGrid<S>::slack);
-              triangle = near.triangle;
-              return std::sqrt(near.distance2) / (S(1) + detail::DistanceGrid<S>::slack);
-            },
-            [this](const Vec3<S>& x, std::uint32_t& triangle) {
-              const Nearest near = bvh_.closest(x, triangle);
-              triangle = near.triangle;
-              return distance(x, near);
-            }) {
-    mark_patches();
-    reach_ = estimate_reach();
-  }
+  MeshSurface(const TriangleMesh<S>& mesh, const Params& params);
 
   /// Closest point of the mesh; the normal is the interpolated one there.
   [[nodiscard]] SurfacePoint<S> closest(const Vec3<S>& x) const noexcept {
@@ -367,5 +341,33 @@ class MeshSurface {
 };
 
 static_assert(ContactSurface<MeshSurface<float>> && ContactSurface<MeshSurface<double>>);
+
+template <Real S>
+MeshSurface<S>::MeshSurface(const TriangleMesh<S>& mesh, const Params& params)
+    : crease_(checked(params)),
+      bvh_(mesh.data()),
+      normals_(mesh, crease_),
+      vertex_normals_(mesh.vertex_normals()),
+      lower_(mesh.lower()),
+      upper_(mesh.upper()),
+      centroid_(mesh.centroid()),
+      volume_(mesh.volume()),
+      edge_(detail::mean_edge(mesh.area(), mesh.triangles().size())),
+      blend_(edge_),
+      grid_(
+          lower_, upper_, (std::clamp)(4 * mesh.triangles().size(), std::size_t(4096), std::size_t(1000000)),
+          [this](const Vec3<S>& x, std::uint32_t& triangle) {
+            const Nearest near = bvh_.near(x, triangle, detail::DistanceGrid<S>::slack);
+            triangle = near.triangle;
+            return std::sqrt(near.distance2) / (S(1) + detail::DistanceGrid<S>::slack);
+          },
+          [this](const Vec3<S>& x, std::uint32_t& triangle) {
+            const Nearest near = bvh_.closest(x, triangle);
+            triangle = near.triangle;
+            return distance(x, near);
+          }) {
+  mark_patches();
+  reach_ = estimate_reach();
+}
 
 }  // namespace palpate

@@ -1,0 +1,3 @@
+// SPDX-License-Identifier: MIT
+#define PALPATE_TEST_MESHES template
+#include "meshes.hpp"
