@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 
-/// @file What only set-up needs, compiled once for programs with PALPATE_COMPILED (config.hpp).
+/// @file Set-up and tick of response fields, compiled once for programs with PALPATE_COMPILED (config.hpp).
 
 #ifndef PALPATE_COMPILED
 #error "compile this file with PALPATE_COMPILED defined, as every file of the program"
 #endif
 
+#define PALPATE_TICK_INSTANCE template
 #include <palpate/response/setup/load_mesh_impl.hpp>
 #include <palpate/response/setup/mid_edge_table_impl.hpp>
 #include <palpate/response/setup/patch_table_impl.hpp>
@@ -13,3 +14,8 @@
 #include <palpate/response/setup/response_field_impl.hpp>
 #include <palpate/response/setup/rotation_table_impl.hpp>
 #include <palpate/response/setup/save_impl.hpp>
+#include <palpate/response/tick/contact_coupling.hpp>
+#include <palpate/response/tick/instances.hpp>
+#include <palpate/response/tick/near_coefficients.hpp>
+#include <palpate/response/tick/patch_moments_impl.hpp>
+#include <palpate/response/tick/pressed_sphere.hpp>

@@ -8,6 +8,7 @@
 #include <palpate/response/tick/contact_system.hpp>
 #include <palpate/response/tick/drawing.hpp>
 #include <palpate/response/tick/field_sum.hpp>
+#include <palpate/response/tick/instances.hpp>
 
 namespace palpate {
 

@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-PALPATE_SETUP_INLINE void LoadMesh::index() {
+PALPATE_COMPILED_INLINE void LoadMesh::index() {
   MeshData<double> mesh;
   mesh.triangles = triangles_;
   for (const auto& n : nodes_) mesh.vertices.push_back(n.source);
@@ -34,7 +34,7 @@ PALPATE_SETUP_INLINE void LoadMesh::index() {
 }
 
 // The triangle beyond the edge opposite to each corner; itself where there is none.
-PALPATE_SETUP_INLINE void LoadMesh::find_neighbours() {
+PALPATE_COMPILED_INLINE void LoadMesh::find_neighbours() {
   struct Side {
     std::uint64_t key;
     std::uint32_t triangle, corner;

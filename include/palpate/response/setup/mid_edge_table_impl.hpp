@@ -9,7 +9,7 @@
 
 namespace palpate {
 
-PALPATE_SETUP_INLINE MidEdgeTable::MidEdgeTable(const ElementMesh& mesh, const detail::MidEdgeFit& fit) {
+PALPATE_COMPILED_INLINE MidEdgeTable::MidEdgeTable(const ElementMesh& mesh, const detail::MidEdgeFit& fit) {
   const auto add = [](Rows& rows, const std::vector<detail::VertexWeight>& row) {
     for (const auto& w : row) rows.weights.push_back({w.vertex, static_cast<float>(w.weight)});
     rows.begin.push_back(static_cast<std::uint32_t>(rows.weights.size()));
@@ -27,7 +27,7 @@ PALPATE_SETUP_INLINE MidEdgeTable::MidEdgeTable(const ElementMesh& mesh, const d
   find_middles(mesh);
 }
 
-PALPATE_SETUP_INLINE void MidEdgeTable::find_middles(const ElementMesh& mesh) {
+PALPATE_COMPILED_INLINE void MidEdgeTable::find_middles(const ElementMesh& mesh) {
   ends_.resize(edge_rows_.size());
   for (std::size_t t = 0; t < of_triangle_.size(); ++t)
     for (std::size_t c = 0; c < 3; ++c)

@@ -73,9 +73,9 @@ inline void add_weight(std::vector<NodeWeight>& list, std::uint32_t node, double
 
 }  // namespace detail
 
-PALPATE_SETUP_INLINE PatchTable::PatchTable(const ElementMesh& mesh, const MidEdgeTable& mid_edges,
-                                            const LoadMesh& load_mesh, unsigned threads,
-                                            const InfluenceFunctions& influence)
+PALPATE_COMPILED_INLINE PatchTable::PatchTable(const ElementMesh& mesh, const MidEdgeTable& mid_edges,
+                                               const LoadMesh& load_mesh, unsigned threads,
+                                               const InfluenceFunctions& influence)
     : unit_(unit(load_mesh)) {
   Vec3<double> low = mesh.vertices[0], high = low;
   for (const auto& v : mesh.vertices) {
@@ -168,8 +168,8 @@ PALPATE_SETUP_INLINE PatchTable::PatchTable(const ElementMesh& mesh, const MidEd
   }
 }
 
-PALPATE_SETUP_INLINE void PatchTable::keep_solved(const LoadMesh& load_mesh,
-                                                  const std::vector<detail::NodeWeight>& list) {
+PALPATE_COMPILED_INLINE void PatchTable::keep_solved(const LoadMesh& load_mesh,
+                                                     const std::vector<detail::NodeWeight>& list) {
   std::vector<detail::NodeWeight> solved;
   for (const detail::NodeWeight& w : list) {
     if (w.node < load_mesh.solved())
@@ -183,7 +183,7 @@ PALPATE_SETUP_INLINE void PatchTable::keep_solved(const LoadMesh& load_mesh,
   spread_begin_.push_back(static_cast<std::uint32_t>(spread_.size()));
 }
 
-PALPATE_SETUP_INLINE double PatchTable::unit(const LoadMesh& load_mesh) {
+PALPATE_COMPILED_INLINE double PatchTable::unit(const LoadMesh& load_mesh) {
   double least = (std::numeric_limits<double>::max)();
   for (const auto& node : load_mesh.nodes()) least = (std::min)(least, node.spacing);
   return 0.25 * least * least;

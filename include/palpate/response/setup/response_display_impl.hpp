@@ -11,8 +11,8 @@
 
 namespace palpate {
 
-PALPATE_SETUP_INLINE void ResponseDisplay::bind(const ElementMesh& mesh,
-                                                const std::vector<Vec3<double>>& points) {
+PALPATE_COMPILED_INLINE void ResponseDisplay::bind(const ElementMesh& mesh,
+                                                   const std::vector<Vec3<double>>& points) {
   const TriangleBvh<double> tree(MeshData<double>{mesh.vertices, mesh.triangles});
   std::vector<TriangleBvh<double>::Nearest> at(points.size());
   std::uint32_t start = 0;

@@ -9,8 +9,8 @@
 
 namespace palpate {
 
-PALPATE_SETUP_INLINE void ResponseField::build(const MeshData<double>& mesh, const FixedRegion& fixed,
-                                               const Params& params) {
+PALPATE_COMPILED_INLINE void ResponseField::build(const MeshData<double>& mesh, const FixedRegion& fixed,
+                                                  const Params& params) {
   const MeshData<double> cut = detail::cut_at_rim(mesh, fixed);
   std::vector<std::uint8_t> inside(cut.triangles.size());
   for (std::size_t t = 0; t < inside.size(); ++t) {
@@ -20,9 +20,9 @@ PALPATE_SETUP_INLINE void ResponseField::build(const MeshData<double>& mesh, con
   build_from(cut, inside, params);
 }
 
-PALPATE_SETUP_INLINE void ResponseField::build(const MeshData<double>& mesh,
-                                               const std::vector<std::uint32_t>& fixed_vertices,
-                                               const Params& params) {
+PALPATE_COMPILED_INLINE void ResponseField::build(const MeshData<double>& mesh,
+                                                  const std::vector<std::uint32_t>& fixed_vertices,
+                                                  const Params& params) {
   std::vector<std::uint8_t> is_fixed(mesh.vertices.size(), 0);
   for (auto v : fixed_vertices) {
     if (v >= is_fixed.size()) fail("ResponseField", "fixed vertices must be vertices of the mesh", v);
@@ -37,7 +37,7 @@ PALPATE_SETUP_INLINE void ResponseField::build(const MeshData<double>& mesh,
   build_from(mesh, inside, params);
 }
 
-PALPATE_SETUP_INLINE ResponseField::ResponseField(ResponseParts parts)
+PALPATE_COMPILED_INLINE ResponseField::ResponseField(ResponseParts parts)
     : E_(parts.E), nu_(parts.nu), mesh_(std::move(parts.mesh)), influence_(std::move(parts.influence)) {
   stride_ = padded(mesh_.vertices.size());
   const std::size_t levels = parts.second.size() / parts.nodes.size();
@@ -50,7 +50,7 @@ PALPATE_SETUP_INLINE ResponseField::ResponseField(ResponseParts parts)
   read_mesh();
 }
 
-PALPATE_SETUP_INLINE ResponseParts ResponseField::parts() const {
+PALPATE_COMPILED_INLINE ResponseParts ResponseField::parts() const {
   return {E_,
           nu_,
           mesh_,
@@ -69,11 +69,13 @@ PALPATE_SETUP_INLINE ResponseParts ResponseField::parts() const {
           mid_edges_.vertex_rows()};
 }
 
-PALPATE_SETUP_INLINE double ResponseField::unresolved_area() const { return palpate::unresolved_area(mesh_); }
+PALPATE_COMPILED_INLINE double ResponseField::unresolved_area() const {
+  return palpate::unresolved_area(mesh_);
+}
 
-PALPATE_SETUP_INLINE void ResponseField::build_from(const MeshData<double>& mesh,
-                                                    const std::vector<std::uint8_t>& fixed_triangle,
-                                                    const Params& params) {
+PALPATE_COMPILED_INLINE void ResponseField::build_from(const MeshData<double>& mesh,
+                                                       const std::vector<std::uint8_t>& fixed_triangle,
+                                                       const Params& params) {
   require_positive(params.E, "ResponseField", "E [Pa] must be > 0");
   if (!(params.nu >= 0 && params.nu <= 0.5)) fail("ResponseField", "nu must be in [0, 1/2]", params.nu);
   E_ = params.E;
@@ -125,7 +127,7 @@ PALPATE_SETUP_INLINE void ResponseField::build_from(const MeshData<double>& mesh
 }
 
 // Force dipole, bending and torsional couples: derivatives of the forces' fields by their position.
-PALPATE_SETUP_INLINE void ResponseField::derive(const detail::LoadPositions& positions, std::size_t k) {
+PALPATE_COMPILED_INLINE void ResponseField::derive(const detail::LoadPositions& positions, std::size_t k) {
   using Row = Eigen::Map<const Eigen::ArrayXf>;
   const auto size = static_cast<Eigen::Index>(3 * stride_);
   const Vec3<double> m = -load_mesh_.nodes()[k].normal, t1 = perpendicular(Vec3<double>(-m)),
@@ -143,7 +145,7 @@ PALPATE_SETUP_INLINE void ResponseField::derive(const detail::LoadPositions& pos
 }
 
 // The field of an edge's node is the mean of its parts' fields.
-PALPATE_SETUP_INLINE void ResponseField::join(const detail::LoadPositions& positions, std::size_t k) {
+PALPATE_COMPILED_INLINE void ResponseField::join(const detail::LoadPositions& positions, std::size_t k) {
   using Row = Eigen::Map<const Eigen::ArrayXf>;
   const auto size = static_cast<Eigen::Index>(3 * stride_);
   const float share = 1.f / static_cast<float>(positions.parts(k).size());
@@ -163,7 +165,7 @@ PALPATE_SETUP_INLINE void ResponseField::join(const detail::LoadPositions& posit
 }
 
 // What a tick reads of the mesh alone.
-PALPATE_SETUP_INLINE void ResponseField::read_mesh() {
+PALPATE_COMPILED_INLINE void ResponseField::read_mesh() {
   rotation_ = RotationTable(mesh_, stride_);
   position_.assign(4 * stride_, 0.f);
   for (std::size_t v = 0; v < mesh_.vertices.size(); ++v) {

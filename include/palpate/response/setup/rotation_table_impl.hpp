@@ -10,7 +10,7 @@
 
 namespace palpate {
 
-PALPATE_SETUP_INLINE RotationTable::RotationTable(const ElementMesh& mesh, std::size_t stride) {
+PALPATE_COMPILED_INLINE RotationTable::RotationTable(const ElementMesh& mesh, std::size_t stride) {
   const std::size_t n = mesh.vertices.size();
   std::vector<std::vector<std::uint32_t>> ring(n);
   std::vector<Vec3<double>> normal(n, Vec3<double>::Zero());
@@ -37,9 +37,9 @@ PALPATE_SETUP_INLINE RotationTable::RotationTable(const ElementMesh& mesh, std::
   }
 }
 
-PALPATE_SETUP_INLINE void RotationTable::fit(const ElementMesh& mesh, std::uint32_t v,
-                                             const std::vector<std::uint32_t>& ring,
-                                             const std::array<Vec3<double>, 3>& axes) {
+PALPATE_COMPILED_INLINE void RotationTable::fit(const ElementMesh& mesh, std::uint32_t v,
+                                                const std::vector<std::uint32_t>& ring,
+                                                const std::array<Vec3<double>, 3>& axes) {
   const auto direction = [&](std::uint32_t j) -> Vec3<double> {
     const Vec3<double> d = mesh.vertices[j] - mesh.vertices[v];
     return Vec3<double>(axes[0].dot(d), axes[1].dot(d), axes[2].dot(d)) / d.norm();

@@ -16,7 +16,7 @@ namespace palpate {
 
 namespace detail {
 
-PALPATE_SETUP_INLINE std::uint64_t checksum(std::span<const std::byte> bytes) noexcept {
+PALPATE_COMPILED_INLINE std::uint64_t checksum(std::span<const std::byte> bytes) noexcept {
   constexpr std::uint64_t prime = 0x100000001b3;
   std::uint64_t part[4] = {0xcbf29ce484222325, 0x84222325cbf29ce4, 0x9e3779b97f4a7c15, 0xc2b2ae3d27d4eb4f};
   std::size_t i = 0;
@@ -93,7 +93,7 @@ class ByteReader {
 };
 }  // namespace detail
 
-PALPATE_SETUP_INLINE std::vector<std::byte> save_response_field(const ResponseField& field) {
+PALPATE_COMPILED_INLINE std::vector<std::byte> save_response_field(const ResponseField& field) {
   const ResponseParts parts = field.parts();
   detail::ByteWriter body;
   body.bytes.reserve(field.memory() + (std::size_t{1} << 20));
@@ -144,7 +144,7 @@ PALPATE_SETUP_INLINE std::vector<std::byte> save_response_field(const ResponseFi
   return std::move(body.bytes);
 }
 
-PALPATE_SETUP_INLINE ResponseField load_response_field(std::span<const std::byte> bytes) {
+PALPATE_COMPILED_INLINE ResponseField load_response_field(std::span<const std::byte> bytes) {
   const char* where = "load_response_field";
   if (bytes.size() < detail::saved_head) fail(where, "at least 32 bytes are needed", double(bytes.size()));
   if (std::memcmp(bytes.data(), "palpateR", 8) != 0)

@@ -15,8 +15,9 @@
 namespace palpate::detail {
 
 /// A dipole and a couple in the axes of node k.
-[[nodiscard]] inline Vec3<double> loads_of_node(const ResponseField& field, std::uint32_t k, double dipole,
-                                                const Vec3<double>& couple) noexcept {
+[[nodiscard]] PALPATE_COMPILED_INLINE Vec3<double> loads_of_node(const ResponseField& field, std::uint32_t k,
+                                                                 double dipole,
+                                                                 const Vec3<double>& couple) noexcept {
   const Vec3<double>& n = field.load_mesh().nodes()[k].normal;
   const Vec3<double> t1 = perpendicular(n);
   return {dipole, couple.dot(t1), couple.dot(n.cross(t1))};
@@ -48,8 +49,9 @@ namespace palpate::detail {
 }
 
 /// Mean displacement of patch i by unit forces on patch j, times mu [1/m].
-[[nodiscard]] inline Mat3<double> coupling(const ResponseField& field, const PlacedContact& ci,
-                                           const PlacedContact& cj) noexcept {
+[[nodiscard]] PALPATE_COMPILED_INLINE Mat3<double> coupling(const ResponseField& field,
+                                                            const PlacedContact& ci,
+                                                            const PlacedContact& cj) noexcept {
   Mat3<double> out =
       ci.carried * cj.carried *
       near_of_forces(cj, Vec3<double>(ci.tool.x - cj.tool.x), std::hypot(ci.tool.a, cj.tool.a), field.nu());
@@ -63,8 +65,9 @@ namespace palpate::detail {
 /// Mean displacement of patch i by contact j's unit loads: radial dipole, bending couples along its t1 and t2
 /// [1/m^2]. By reciprocity its transpose is the spread and the slopes along t1 and t2 beneath patch j by unit
 /// forces on patch i.
-[[nodiscard]] inline Mat3<double> coupling_of_moments(const ResponseField& field, const PlacedContact& ci,
-                                                      const PlacedContact& cj) noexcept {
+[[nodiscard]] PALPATE_COMPILED_INLINE Mat3<double> coupling_of_moments(const ResponseField& field,
+                                                                       const PlacedContact& ci,
+                                                                       const PlacedContact& cj) noexcept {
   const double nu = field.nu(), a = std::hypot(ci.tool.a, cj.tool.a),
                near = ci.carried * cj.carried / (4 * std::numbers::pi);
   const Vec3<double> r = ci.tool.x - cj.tool.x, p = tangential(r, cj.tool.m);
@@ -89,8 +92,9 @@ namespace palpate::detail {
   return out;
 }
 /// Mean displacement of patch i by contact j's unit torsional couple about its m [1/m^2].
-[[nodiscard]] inline Vec3<double> coupling_of_torsion(const ResponseField& field, const PlacedContact& ci,
-                                                      const PlacedContact& cj) noexcept {
+[[nodiscard]] PALPATE_COMPILED_INLINE Vec3<double> coupling_of_torsion(const ResponseField& field,
+                                                                       const PlacedContact& ci,
+                                                                       const PlacedContact& cj) noexcept {
   const double near = ci.carried * cj.carried / (4 * std::numbers::pi);
   const Vec3<double> r = ci.tool.x - cj.tool.x, p = tangential(r, cj.tool.m);
   Vec3<double> out =

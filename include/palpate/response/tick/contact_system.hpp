@@ -18,9 +18,7 @@
 
 #include <palpate/core/cholesky.hpp>
 #include <palpate/response/contact_types.hpp>
-#include <palpate/response/tick/contact_coupling.hpp>
-#include <palpate/response/tick/near_coefficients.hpp>
-#include <palpate/response/tick/pressed_sphere.hpp>
+#include <palpate/response/tick/make_stages.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -62,39 +60,12 @@ class ContactSystem {
 
   /// All further stages of the first `count` contacts, all placed. The forces alone come first; they give the
   /// loads beside the force; with these the forces are solved again.
-  void solve(std::size_t count) noexcept {
-    std::array<double, Capacity> activation, wide;
-    for (std::size_t i = 0; i < count; ++i) activation[i] = 1, wide[i] = placed_[i].wide;
-    if constexpr (Capacity > 1)
-      if (count > 1) {
-        couple(count);
-        activate(count, activation, wide);
-      }
-    for (std::size_t i = 0; i < count; ++i)
-      construct(bonded_[i], [&] { return bond_contact(*field_, placed_[i], activation[i], wide[i]); });
-    solve_linear(count);
-    bool any = false;
-    for (std::size_t i = 0; i < count; ++i) {
-      construct(second_[i], [&] {
-        return second_order_loads(*field_, second_order(), placed_[i], bonded_[i], linear_[i]);
-      });
-      any = any || has_loads(placed_[i].tool, second_[i]);
-    }
-    solve_second(count, any);
-  }
+  void solve(std::size_t count) noexcept;
 
   /// All stages of one sphere alone. `curvature`: k1 + k2 of the surface.
   PressedSphere solve_sphere(const Indenter& tool, double curvature) noexcept {
-    const SphereShape shape(tool, curvature, second_order());
-    const SphereSolution sphere = solve_sphere_contact(*field_, second_order(), tool, shape, placed_[0]);
     construct(bonded_[0], [] { return BondedContact{}; });
-    construct(second_[0], [&] { return sphere_loads(second_order(), *field_, tool, shape, sphere); });
-    construct(solved_[0], [&] {
-      return SolvedContact{tool.x + sphere.shift, sphere.a, sphere.P, Moments::Zero()};
-    });
-    return {sphere.felt, second_order() == nullptr
-                             ? Vec3<double>(Vec3<double>::Zero())
-                             : Vec3<double>(field_->shear_modulus() * tangential(sphere.P, tool.m))};
+    return press_sphere(*field_, second_order(), tool, curvature, placed_[0], second_[0], solved_[0]);
   }
 
   /// Force that the tool exerts in contact c / mu.
@@ -104,18 +75,7 @@ class ContactSystem {
   /// and the couple that keeps the patch from rotating about m with w. The field leaves out the latter. In
   /// theory it takes less than all of a compliance; it is bounded by half of one, for patches that are wide
   /// for a thin part.
-  [[nodiscard]] Vec3<double> torque(std::size_t i, std::size_t count) const noexcept {
-    const PlacedContact& c = placed_[i];
-    const double stiffness = torsional_stiffness(*field_, c, bonded_[i].activation);
-    const auto rotated = [this, stiffness](const Vec3<double>& by_force, std::size_t j) {
-      const double taken = stiffness * by_force.squaredNorm(), whole = bonded_[j].C.trace();
-      return smooth_limit(taken * taken, tick::max_bonded_part2 * whole * whole) * by_force.dot(solved_[j].P);
-    };
-    double angle = rotated(moved_by_torsion(*field_, c), i);
-    for (std::size_t j = 0; j < count; ++j)
-      if (j != i) angle += rotated(coupling_of_torsion(*field_, placed_[j], c), j);
-    return felt_couple(i).cross(c.tool.m) + (bonded_[i].rotation.torsion - stiffness * angle) * c.tool.m;
-  }
+  [[nodiscard]] Vec3<double> torque(std::size_t i, std::size_t count) const noexcept;
 
  private:
   // Mean displacement of patch i by contact j: by unit forces, by unit loads beside them.
@@ -306,5 +266,41 @@ class ContactSystem {
   std::array<SolvedContact, Capacity> solved_{};
   std::array<Coupling, Capacity == 1 ? 0 : Capacity * Capacity> coupling_{};
 };
+
+template <std::size_t Capacity>
+void ContactSystem<Capacity>::solve(std::size_t count) noexcept {
+  std::array<double, Capacity> activation, wide;
+  for (std::size_t i = 0; i < count; ++i) activation[i] = 1, wide[i] = placed_[i].wide;
+  if constexpr (Capacity > 1)
+    if (count > 1) {
+      couple(count);
+      activate(count, activation, wide);
+    }
+  for (std::size_t i = 0; i < count; ++i)
+    construct(bonded_[i], [&] { return bond_contact(*field_, placed_[i], activation[i], wide[i]); });
+  solve_linear(count);
+  bool any = false;
+  for (std::size_t i = 0; i < count; ++i) {
+    construct(second_[i], [&] {
+      return second_order_loads(*field_, second_order(), placed_[i], bonded_[i], linear_[i]);
+    });
+    any = any || has_loads(placed_[i].tool, second_[i]);
+  }
+  solve_second(count, any);
+}
+
+template <std::size_t Capacity>
+Vec3<double> ContactSystem<Capacity>::torque(std::size_t i, std::size_t count) const noexcept {
+  const PlacedContact& c = placed_[i];
+  const double stiffness = torsional_stiffness(*field_, c, bonded_[i].activation);
+  const auto rotated = [this, stiffness](const Vec3<double>& by_force, std::size_t j) {
+    const double taken = stiffness * by_force.squaredNorm(), whole = bonded_[j].C.trace();
+    return smooth_limit(taken * taken, tick::max_bonded_part2 * whole * whole) * by_force.dot(solved_[j].P);
+  };
+  double angle = rotated(moved_by_torsion(*field_, c), i);
+  for (std::size_t j = 0; j < count; ++j)
+    if (j != i) angle += rotated(coupling_of_torsion(*field_, placed_[j], c), j);
+  return felt_couple(i).cross(c.tool.m) + (bonded_[i].rotation.torsion - stiffness * angle) * c.tool.m;
+}
 
 }  // namespace palpate::detail

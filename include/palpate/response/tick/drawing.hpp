@@ -10,11 +10,32 @@
 
 #include <palpate/response/response_display.hpp>
 #include <palpate/response/tick/mid_edge_correction.hpp>
-#include <palpate/response/tick/pressed_sphere.hpp>
 
 #include <type_traits>
 
 namespace palpate::detail {
+
+/// Puts the surface on the sphere within the contact, and keeps it outside the sphere beside the contact.
+/// `at`: an undeformed position; u: its displacement, changed along m by less than 0.4 d: what is farther off
+/// is another side of the body. `reach`: where that ends, from the contact's rim [m].
+inline void rest_on_sphere(const DrawnContact& c, const Vec3<double>& at, double reach,
+                           Vec3<double>& u) noexcept {
+  const Indenter& tool = c.tool;
+  const Vec3<double> moved = at + u - c.first;
+  const double depth = tool.d.dot(tool.m),
+               rest = tool.sphere * tool.sphere - tangential(moved, tool.m).squaredNorm();
+  if (!(rest > 0)) return;
+  const double inside = depth - tool.sphere + std::sqrt(rest) - moved.dot(tool.m), off = inside / depth,
+               r = (at - tool.x).norm();
+  // A point inside the sphere is moved out: wholly up to half of a radius (or of `reach`, if less) from the
+  // rim, not at all from all of it on. A point below is drawn up, towards the rim less and less over a tenth
+  // of the radius.
+  const double share = inside > 0 ? 2 - 2 * (r - tool.a) / (std::min)(tool.a, reach) : 10 * (1 - r / tool.a);
+  // The shift fades to nothing towards the sphere's equator, from a quarter of R_s^2 down, and where the
+  // point is off by d.
+  u += std::clamp(share, 0.0, 1.0) * (std::min)(4 * rest / (tool.sphere * tool.sphere), 1.0) *
+       (std::max)(1 - off * off, 0.0) * inside * tool.m;
+}
 
 /// What is drawn: contacts, and their near fields at the mesh's vertices, one contact after the other, by
 /// coordinate.
@@ -35,19 +56,7 @@ class ResponseDrawing {
         corrections_(field.mid_edges(), field.stride()) {}
 
   /// `total`: the field at the boundary element mesh's vertices, by coordinate.
-  void read(const float* total, const DrawnContacts& contacts) noexcept {
-    const std::size_t n = field_->stride();
-    for (std::size_t v = 0; v < n; v += Simd4::size())
-      store_by_fours(&total_[4 * v], Simd4(total + v), Simd4(total + n + v), Simd4(total + 2 * n + v));
-    double d2 = 0;
-    for (const DrawnContact& c : contacts.contact) d2 = (std::max)(d2, c.tool.displacement2());
-    const auto reach = static_cast<float>(tick::mid_edge_reach * field_->mesh().length);
-    corrections_.read(total, contacts.own, n, contacts.contact, reach);
-    corrections_.correct_vertices({field_->coordinate(0), field_->coordinate(1), field_->coordinate(2)},
-                                  total_.data(), contacts.contact, reach,
-                                  static_cast<float>(tick::max_vertex_correction * std::sqrt(d2)),
-                                  raised_.data());
-  }
+  void read(const float* total, const DrawnContacts& contacts) noexcept;
 
   /// Calls emit(slot, u) with a SIMD vector of displacements from that slot on, until all of a display have
   /// theirs. An `emit` that can be assigned is copied and put back.
@@ -76,17 +85,7 @@ class ResponseDrawing {
     return most * most - (rx * rx + ry * ry + rz * rz);
   }
   // Marks the spans that may have vertices within reach of a contact.
-  void find_close(const ResponseDisplay& display, const DrawnContacts& contacts) noexcept {
-    const ResponseDisplay::Spheres& around = display.around();
-    for (std::size_t i = 0; i < around.radius.size(); i += Simd4::size()) {
-      const auto from = [i](const std::vector<float>& list) { return Simd4(&list[i]); };
-      const Simd4 x = from(around.x), y = from(around.y), z = from(around.z), radius = from(around.radius);
-      Simd4 inside = Simd4(-1.f);
-      for (std::size_t c = 0; c < contacts.contact.size(); ++c)
-        inside = (max)(inside, within_reach(x, y, z, radius, contacts.contact[c].near));
-      store(&close_[i], inside);
-    }
-  }
+  void find_close(const ResponseDisplay& display, const DrawnContacts& contacts) noexcept;
   [[nodiscard]] PALPATE_INLINE bool is_close(const ResponseDisplay& display,
                                              std::size_t span) const noexcept {
     return close_[span] > 0 && !field_->mesh().fixed_triangle[display.spans()[span].triangle];
@@ -262,5 +261,33 @@ class ResponseDrawing {
   std::vector<float> close_;   // by span of the display: above 0 within reach of a contact
   MidEdgeCorrection<Capacity> corrections_;
 };
+
+template <std::size_t Capacity>
+void ResponseDrawing<Capacity>::read(const float* total, const DrawnContacts& contacts) noexcept {
+  const std::size_t n = field_->stride();
+  for (std::size_t v = 0; v < n; v += Simd4::size())
+    store_by_fours(&total_[4 * v], Simd4(total + v), Simd4(total + n + v), Simd4(total + 2 * n + v));
+  double d2 = 0;
+  for (const DrawnContact& c : contacts.contact) d2 = (std::max)(d2, c.tool.displacement2());
+  const auto reach = static_cast<float>(tick::mid_edge_reach * field_->mesh().length);
+  corrections_.read(total, contacts.own, n, contacts.contact, reach);
+  corrections_.correct_vertices(
+      {field_->coordinate(0), field_->coordinate(1), field_->coordinate(2)}, total_.data(), contacts.contact,
+      reach, static_cast<float>(tick::max_vertex_correction * std::sqrt(d2)), raised_.data());
+}
+
+template <std::size_t Capacity>
+void ResponseDrawing<Capacity>::find_close(const ResponseDisplay& display,
+                                           const DrawnContacts& contacts) noexcept {
+  const ResponseDisplay::Spheres& around = display.around();
+  for (std::size_t i = 0; i < around.radius.size(); i += Simd4::size()) {
+    const auto from = [i](const std::vector<float>& list) { return Simd4(&list[i]); };
+    const Simd4 x = from(around.x), y = from(around.y), z = from(around.z), radius = from(around.radius);
+    Simd4 inside = Simd4(-1.f);
+    for (std::size_t c = 0; c < contacts.contact.size(); ++c)
+      inside = (max)(inside, within_reach(x, y, z, radius, contacts.contact[c].near));
+    store(&close_[i], inside);
+  }
+}
 
 }  // namespace palpate::detail

@@ -35,16 +35,7 @@ class FieldSum {
   }
 
   /// Adds up the field of the first `count` contacts, all solved.
-  void add_up(const ContactSystem<Capacity>& contacts, std::size_t count) noexcept {
-    const auto n = static_cast<Eigen::Index>(field_->stride());
-    all(total_).setZero();
-    count_ = count;
-    for (std::size_t c = 0; c < count; ++c) add_contact(contacts, c);
-    const Row free(field_->is_free(), n);
-    for (Eigen::Index axis = 0; axis < 3; ++axis) all(total_).segment(axis * n, n) *= free;
-    add_rotation(contacts);
-    limit(contacts);
-  }
+  void add_up(const ContactSystem<Capacity>& contacts, std::size_t count) noexcept;
   /// The field, by coordinate, `stride()` numbers each [m].
   [[nodiscard]] const float* total() const noexcept { return total_.data(); }
   [[nodiscard]] DrawnContacts drawn() const noexcept { return {{drawn_.data(), count_}, near_.data()}; }
@@ -167,5 +158,17 @@ class FieldSum {
   std::vector<std::uint32_t> patch_;  // nodes with a part; never more than reserved
   RotationCorrection<Capacity> rotation_;
 };
+
+template <std::size_t Capacity>
+void FieldSum<Capacity>::add_up(const ContactSystem<Capacity>& contacts, std::size_t count) noexcept {
+  const auto n = static_cast<Eigen::Index>(field_->stride());
+  all(total_).setZero();
+  count_ = count;
+  for (std::size_t c = 0; c < count; ++c) add_contact(contacts, c);
+  const Row free(field_->is_free(), n);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) all(total_).segment(axis * n, n) *= free;
+  add_rotation(contacts);
+  limit(contacts);
+}
 
 }  // namespace palpate::detail

@@ -19,21 +19,10 @@ namespace palpate::detail {
   return a * (1 - 2 * nu) / (std::numbers::pi * (1 - nu));
 }
 
-/// Factor that bounds a displacement of length `size` by loads beside the force: the series in depth ends
-/// where it is half of d. `displacement2`: Indenter::displacement2.
-[[nodiscard]] inline double series_share(double size, double displacement2) noexcept {
-  return smooth_limit(size * size, tick::max_load_displacement2 * displacement2);
-}
-/// The same, of a displacement u whose force S u is half of the contact's.
+/// `series_share` of a displacement u whose force S u is half of the contact's.
 [[nodiscard]] inline double series_share_of_force(const Vec3<double>& u, const Mat3<double>& S,
                                                   const Vec3<double>& P) noexcept {
   return smooth_limit((S * u).squaredNorm(), tick::max_load_force2 * P.squaredNorm());
-}
-/// Size of the displacement by a dipole and a couple, given those by unit loads. Not that of their sum: where
-/// two large ones cancel each other, what is left is noise.
-[[nodiscard]] inline double size_of_both(double by_dipole, double dipole, double by_couple,
-                                         const Vec3<double>& couple) noexcept {
-  return by_dipole * std::abs(dipole) + by_couple * couple.norm();
 }
 
 /// w at a contact's patch by its own loads, times mu. By reciprocity: the spread and the slopes of w by unit
@@ -79,8 +68,9 @@ struct MovedByLoads {
 /// H: mean curvature, from the mean depth H a^2 / 2 of the patch's edge. On a convex surface there is less
 /// material around the patch to shear; the factor is the first order of that (docs/response_field.md). Times
 /// the contact's activation.
-[[nodiscard]] inline double torsional_stiffness(const ResponseField& field, const PlacedContact& c,
-                                                double activation) noexcept {
+[[nodiscard]] PALPATE_COMPILED_INLINE double torsional_stiffness(const ResponseField& field,
+                                                                 const PlacedContact& c,
+                                                                 double activation) noexcept {
   const double a = c.tool.a,
                Ha = 2 / a *
                     field.table().edge(&MomentRow::mean_sagitta, c.position.node, c.position.weight, a);
@@ -89,8 +79,8 @@ struct MovedByLoads {
 }
 /// Mean displacement of a contact's patch by w of its unit torsional couple; by reciprocity the rotation of w
 /// about m by unit forces [1/m^2].
-[[nodiscard]] inline Vec3<double> moved_by_torsion(const ResponseField& field,
-                                                   const PlacedContact& c) noexcept {
+[[nodiscard]] PALPATE_COMPILED_INLINE Vec3<double> moved_by_torsion(const ResponseField& field,
+                                                                    const PlacedContact& c) noexcept {
   Vec3<double> u = Vec3<double>::Zero();
   for (std::size_t i = 0; i < 3; ++i)
     u += c.regular * c.regular * c.position.weight[Eigen::Index(i)] *
@@ -118,8 +108,9 @@ struct MovedByLoads {
 
 /// The bonded stage: C less what the moments of a wide patch take from it, and the tool's rotation. `wide`:
 /// share of the moments.
-[[nodiscard]] inline BondedContact bond_contact(const ResponseField& field, const PlacedContact& c,
-                                                double activation, double wide) noexcept {
+[[nodiscard]] PALPATE_COMPILED_INLINE BondedContact bond_contact(const ResponseField& field,
+                                                                 const PlacedContact& c, double activation,
+                                                                 double wide) noexcept {
   BondedContact out;
   out.activation = activation;
   out.C = c.C;

@@ -75,9 +75,11 @@ inline void set_near_terms(const SecondOrder& k, const SecondOrderContact& secon
 }
 
 /// The drawn stage.
-[[nodiscard]] inline DrawnContact draw_contact(const SecondOrder& k, double nu, const PlacedContact& c,
-                                               const BondedContact& bonded, const SecondOrderContact& second,
-                                               const SolvedContact& solved) noexcept {
+[[nodiscard]] PALPATE_COMPILED_INLINE DrawnContact draw_contact(const SecondOrder& k, double nu,
+                                                                const PlacedContact& c,
+                                                                const BondedContact& bonded,
+                                                                const SecondOrderContact& second,
+                                                                const SolvedContact& solved) noexcept {
   DrawnContact out{c.tool, c.tool.x, near_field_of(k, nu, c, bonded, second, solved)};
   out.tool.x = solved.x;
   out.tool.a = solved.a;

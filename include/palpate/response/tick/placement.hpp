@@ -53,7 +53,8 @@ void add_position(const LoadMesh& touch, const LoadPosition& position, List& lis
 }
 
 /// The placed stage of a contact.
-[[nodiscard]] inline PlacedContact place_contact(const ResponseField& field, const Indenter& tool) noexcept {
+[[nodiscard]] PALPATE_COMPILED_INLINE PlacedContact place_contact(const ResponseField& field,
+                                                                  const Indenter& tool) noexcept {
   PlacedContact c;
   c.tool = tool;
   c.displacement2 = tool.displacement2();
@@ -100,8 +101,9 @@ void each_spread(const ResponseField& field, const PlacedContact& c, double load
 ///
 /// Continuous in the contact's position. Nearest positions of points of the patch's plane would not be: away
 /// from the surface they jump from sheet to sheet.
-[[nodiscard]] inline double spread_force(const ResponseField& field, const PlacedContact& c, double loaded2,
-                                         float* weight, std::vector<std::uint32_t>& nodes) noexcept {
+[[nodiscard]] PALPATE_COMPILED_INLINE double spread_force(const ResponseField& field, const PlacedContact& c,
+                                                          double loaded2, float* weight,
+                                                          std::vector<std::uint32_t>& nodes) noexcept {
   nodes.clear();
   double sum = 0;
   each_spread(field, c, loaded2, [&](double part, std::uint32_t k, std::size_t level) {
@@ -118,8 +120,8 @@ void each_spread(const ResponseField& field, const PlacedContact& c, double load
 
 /// The nodes' parts q of the patch's moments (moment_loads.hpp), three numbers each, where they have a
 /// weight.
-inline void spread_moments(const ResponseField& field, const PlacedContact& c, double loaded2,
-                           const float* weight, float* q) noexcept {
+PALPATE_COMPILED_INLINE void spread_moments(const ResponseField& field, const PlacedContact& c,
+                                            double loaded2, const float* weight, float* q) noexcept {
   each_spread(field, c, loaded2, [&](double part, std::uint32_t k, std::size_t level) {
     each_moment(field.load_mesh(), k, field.table().spread(k, level),
                 [&](std::uint32_t node, const Vec3<double>& own) {

@@ -29,21 +29,6 @@
 
 #include <Eigen/LU>
 
-namespace palpate {
-
-/// What a sphere that is pressed into a body feels; `force` and `stiffness` are along the normal.
-struct PressedSphere : SphereForce<double> {
-  /// Tangential force on the body [N], 1 to 5 % of `force` where the body slopes.
-  Vec3<double> across = Vec3<double>::Zero();
-
-  /// Force that the sphere exerts on the body [N]; `normal`: the contact's, outward, unit.
-  [[nodiscard]] Vec3<double> on_body(const Vec3<double>& normal) const noexcept {
-    return across - force * normal;
-  }
-};
-
-}  // namespace palpate
-
 namespace palpate::detail {
 
 /// The gap between sphere and body.
@@ -164,26 +149,18 @@ struct SphereAcross {
   return out;
 }
 
-/// Puts the surface on the sphere within the contact, and keeps it outside the sphere beside the contact.
-/// `at`: an undeformed position; u: its displacement, changed along m by less than 0.4 d: what is farther off
-/// is another side of the body. `reach`: where that ends, from the contact's rim [m].
-inline void rest_on_sphere(const DrawnContact& c, const Vec3<double>& at, double reach,
-                           Vec3<double>& u) noexcept {
-  const Indenter& tool = c.tool;
-  const Vec3<double> moved = at + u - c.first;
-  const double depth = tool.d.dot(tool.m),
-               rest = tool.sphere * tool.sphere - tangential(moved, tool.m).squaredNorm();
-  if (!(rest > 0)) return;
-  const double inside = depth - tool.sphere + std::sqrt(rest) - moved.dot(tool.m), off = inside / depth,
-               r = (at - tool.x).norm();
-  // A point inside the sphere is moved out: wholly up to half of a radius (or of `reach`, if less) from the
-  // rim, not at all from all of it on. A point below is drawn up, towards the rim less and less over a tenth
-  // of the radius.
-  const double share = inside > 0 ? 2 - 2 * (r - tool.a) / (std::min)(tool.a, reach) : 10 * (1 - r / tool.a);
-  // The shift fades to nothing towards the sphere's equator, from a quarter of R_s^2 down, and where the
-  // point is off by d.
-  u += std::clamp(share, 0.0, 1.0) * (std::min)(4 * rest / (tool.sphere * tool.sphere), 1.0) *
-       (std::max)(1 - off * off, 0.0) * inside * tool.m;
+/// All stages of one sphere alone. `sum_of_curvatures`: k1 + k2 of the surface.
+[[nodiscard]] PALPATE_COMPILED_INLINE PressedSphere
+press_sphere(const ResponseField& field, const SecondOrder* k, const Indenter& tool, double sum_of_curvatures,
+             PlacedContact& placed, SecondOrderContact& second, SolvedContact& solved) noexcept {
+  const SphereShape shape(tool, sum_of_curvatures, k);
+  const SphereSolution sphere = solve_sphere_contact(field, k, tool, shape, placed);
+  construct(second, [&] { return sphere_loads(k, field, tool, shape, sphere); });
+  construct(solved, [&] {
+    return SolvedContact{tool.x + sphere.shift, sphere.a, sphere.P, Moments::Zero()};
+  });
+  return {sphere.felt, k == nullptr ? Vec3<double>(Vec3<double>::Zero())
+                                    : Vec3<double>(field.shear_modulus() * tangential(sphere.P, tool.m))};
 }
 
 }  // namespace palpate::detail

@@ -92,11 +92,9 @@ struct RegularDisplacement {
 }
 
 /// The second order stage. `constants`: null for the loads of first order alone.
-[[nodiscard]] inline SecondOrderContact second_order_loads(const ResponseField& field,
-                                                           const SecondOrder* constants,
-                                                           const PlacedContact& c,
-                                                           const BondedContact& bonded,
-                                                           const LinearContact& linear) noexcept {
+[[nodiscard]] PALPATE_COMPILED_INLINE SecondOrderContact
+second_order_loads(const ResponseField& field, const SecondOrder* constants, const PlacedContact& c,
+                   const BondedContact& bonded, const LinearContact& linear) noexcept {
   const Indenter& tool = c.tool;
   const double nu = field.nu();
   const IndentingForce F(c, linear.P);

@@ -19,6 +19,7 @@
 /// [johnson1985] ch. 4.
 
 #include <palpate/core/scalar.hpp>
+#include <palpate/core/vector.hpp>
 #include <palpate/response/tick/constants.hpp>
 
 #include <algorithm>
@@ -33,6 +34,17 @@ struct SphereForce {
   S force = S(0);      ///< normal, >= 0 [N]
   S stiffness = S(0);  ///< dF/dd [N/m]
   S radius = S(0);     ///< of the contact [m]
+};
+
+/// What a sphere that is pressed into a body feels; `force` and `stiffness` are along the normal.
+struct PressedSphere : SphereForce<double> {
+  /// Tangential force on the body [N], 1 to 5 % of `force` where the body slopes.
+  Vec3<double> across = Vec3<double>::Zero();
+
+  /// Force that the sphere exerts on the body [N]; `normal`: the contact's, outward, unit.
+  [[nodiscard]] Vec3<double> on_body(const Vec3<double>& normal) const noexcept {
+    return across - force * normal;
+  }
 };
 
 /// Solves d(a) for a by Newton steps inside a bracket; d grows with a, so the root is single. `compliance`:

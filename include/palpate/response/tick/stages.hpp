@@ -146,6 +146,18 @@ void construct(Stage& at, const Make& make) noexcept {
   ::new (static_cast<void*>(std::addressof(at))) Stage(make());
 }
 
+/// Factor that bounds a displacement of length `size` by loads beside the force: the series in depth ends
+/// where it is half of d. `displacement2`: Indenter::displacement2.
+[[nodiscard]] inline double series_share(double size, double displacement2) noexcept {
+  return smooth_limit(size * size, tick::max_load_displacement2 * displacement2);
+}
+/// Size of the displacement by a dipole and a couple, given those by unit loads. Not that of their sum: where
+/// two large ones cancel each other, what is left is noise.
+[[nodiscard]] inline double size_of_both(double by_dipole, double dipole, double by_couple,
+                                         const Vec3<double>& couple) noexcept {
+  return by_dipole * std::abs(dipole) + by_couple * couple.norm();
+}
+
 /// True when a contact has loads beside its force.
 [[nodiscard]] inline bool has_loads(const Indenter& tool, const SecondOrderContact& second) noexcept {
   return second.dipole != 0 || tool.is_rotated();

@@ -176,7 +176,7 @@ inline void write_cache(const std::string& name, std::uint64_t key, std::span<co
 
 }  // namespace detail
 
-PALPATE_SETUP_INLINE void ElasticBody::build(MeshData<double> data, const Params& params) {
+PALPATE_COMPILED_INLINE void ElasticBody::build(MeshData<double> data, const Params& params) {
   const auto report = [&params](double done) {
     if (params.progress) params.progress(done);
   };

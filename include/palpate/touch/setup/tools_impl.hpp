@@ -63,7 +63,7 @@ inline constexpr std::size_t tool_vertices = 1500;    // chosen: chords of a cir
 
 }  // namespace detail
 
-PALPATE_SETUP_INLINE MeshTool capsule(double radius, double length, const ToolParams& params) {
+PALPATE_COMPILED_INLINE MeshTool capsule(double radius, double length, const ToolParams& params) {
   require_positive(radius, "capsule", "radius [m] must be > 0");
   require_positive(length, "capsule", "length [m] must be > 0");
   // An end that is d deep has the sum of points sum A_i d_i = pi r d^2 over A_0 times the disc's stiffness
@@ -73,19 +73,19 @@ PALPATE_SETUP_INLINE MeshTool capsule(double radius, double length, const ToolPa
                            2.25 * std::numbers::pi * deep * radius * radius, params);
 }
 
-PALPATE_SETUP_INLINE MeshTool cylinder(double radius, double length, const ToolParams& params) {
+PALPATE_COMPILED_INLINE MeshTool cylinder(double radius, double length, const ToolParams& params) {
   require_positive(length, "cylinder", "length [m] must be > 0");
   const Cylinder<double> shape({.radius = radius, .half_height = length / 2});
   return detail::mesh_tool("cylinder", shape.mesh(detail::tool_vertices), std::numbers::pi * radius * radius,
                            params);
 }
 
-PALPATE_SETUP_INLINE MeshTool box(const Vec3<double>& size, const ToolParams& params) {
+PALPATE_COMPILED_INLINE MeshTool box(const Vec3<double>& size, const ToolParams& params) {
   const Box<double> shape({.half = size / 2});
   return detail::mesh_tool("box", shape.mesh(detail::tool_vertices), size.x() * size.z(), params);
 }
 
-PALPATE_SETUP_INLINE MeshTool tool_mesh(const MeshData<double>& mesh, const ToolParams& params) {
+PALPATE_COMPILED_INLINE MeshTool tool_mesh(const MeshData<double>& mesh, const ToolParams& params) {
   return detail::mesh_tool("tool_mesh", mesh, 0, params);
 }
 

@@ -49,11 +49,11 @@ template <ForceMap Map>
   return std::move(made.map);
 }
 
-PALPATE_SETUP_INLINE TouchParts<BallTool>::TouchParts(const ElasticBody& body, const BallTool& ball)
+PALPATE_COMPILED_INLINE TouchParts<BallTool>::TouchParts(const ElasticBody& body, const BallTool& ball)
     : TouchParts(body, ball, curved_surface(body, ball.radius)) {}
 
-PALPATE_SETUP_INLINE TouchParts<BallTool>::TouchParts(const ElasticBody& body, const BallTool& ball,
-                                                      const CurvedSurface& curved)
+PALPATE_COMPILED_INLINE TouchParts<BallTool>::TouchParts(const ElasticBody& body, const BallTool& ball,
+                                                         const CurvedSurface& curved)
     : tool{.tip = Vec3<double>::Zero(), .centre_of_mass = ball.centre_of_mass},
       object(GrownSurface(SharedSurface(body.surface()), ball.radius),
              {.spacing = sample_spacing(body.surface()->lower(), body.surface()->upper(),
@@ -70,7 +70,7 @@ PALPATE_SETUP_INLINE TouchParts<BallTool>::TouchParts(const ElasticBody& body, c
   fit.sample_spacing = object.spacing();
 }
 
-PALPATE_SETUP_INLINE TouchParts<MeshTool>::TouchParts(const ElasticBody& body, const MeshTool& mesh)
+PALPATE_COMPILED_INLINE TouchParts<MeshTool>::TouchParts(const ElasticBody& body, const MeshTool& mesh)
     : tool(TriangleMesh<double>(mesh.mesh),
            {.contact_area = mesh.contact_area, .centre_of_mass = mesh.centre_of_mass}, mesh.spacing),
       contacts{.distance = 2.5 * mesh.spacing},
