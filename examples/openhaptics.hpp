@@ -22,11 +22,11 @@
 #include <palpate/core/fixed_vector.hpp>
 #include <palpate/core/pose.hpp>
 #include <palpate/core/status.hpp>
-#include <palpate/device/gate.hpp>
+#include <palpate/device/servo_chain.hpp>
 #include <palpate/device/servo_statistics.hpp>
 #include <palpate/device/spsc_ring.hpp>
+#include <palpate/device/stability_check.hpp>
 #include <palpate/device/triple_buffer.hpp>
-#include <palpate/device/workspace.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -34,6 +34,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <optional>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -60,32 +61,27 @@ struct DeviceError {
   HDErrorInfo info = {};
 };
 
-/// Opens a device and renders `solver` through a Gate in the device's own servo thread.
+/// Opens a device and renders `solver` through a ServoChain in the device's own servo thread.
 ///
-/// Solver: `tick(pose, dt)`, noexcept, gives a result with `.wrench` (about the tool's centre of mass, object
-/// coordinates) and `.status`; an optional `reset()` noexcept forgets contacts after an error. The solver
+/// Solver: as ServoChain has it; an optional `reset()` noexcept forgets contacts after an error. The solver
 /// belongs to the servo thread from start() to stop(). Clock: std::chrono-like; tests put a simulated one
-/// here.
+/// here. Coupling: NoVirtualCoupling, or VirtualCoupling for scenes that are stiffer than the device.
 ///
 /// Set-up errors throw SetupError. The callback prints nothing, allocates nothing and never waits: errors of
 /// the device go to a ring (next_error()), the newest tick to a triple buffer (fetch(), view()), all ticks to
 /// a buffer reserved at set-up (recording()). All public functions are for one thread, the one that owns the
 /// object.
-template <class Solver, class Clock = std::chrono::steady_clock>
+template <class Solver, class Clock = std::chrono::steady_clock, class Coupling = NoVirtualCoupling<double>>
 class HapticDevice {
  public:
-  using Result =
-      std::remove_cvref_t<decltype(std::declval<Solver&>().tick(std::declval<const Pose<double>&>(), 1e-3))>;
-  static_assert(
-      noexcept(std::declval<Solver&>().tick(std::declval<const Pose<double>&>(), 1e-3)),
-      "HapticDevice: Solver::tick(pose, dt) must be noexcept: an exception cannot leave the vendor's thread");
+  using Chain = ServoChain<Solver, Coupling>;
+  using Result = typename Chain::Result;
 
   struct Params {
     const char* name = HD_DEFAULT_DEVICE;  ///< as configured with the vendor's tool; null: the first device
     unsigned long rate = 1000;             ///< asked for [Hz]; a refusal is reported, not fatal
-    WorkspaceMapping<double> mapping = {};
-    Gate<double>::Params gate = {
-        .max_force = 50};  ///< lowered to the device's own limits; 50 N: larger than any of these
+    /// `limits` are lowered to the device's own; 50 N: larger than any of these.
+    typename Chain::Params chain = {.limits = {.max_force = 50}};
     bool reset_encoders =
         false;               ///< devices without a home sensor: true when the arm rests in its neutral pose
     std::size_t record = 0;  ///< ticks to keep for recording()
@@ -100,8 +96,9 @@ class HapticDevice {
     Vec3<double> velocity =
         Vec3<double>::Zero();  ///< of the hand, device axes, as the device smooths it [m/s]
     Result result{};           ///< the solver's
-    Wrench<double> output;     ///< after the gate: device axes, torque about the stylus point
+    Wrench<double> output;     ///< what was sent: device axes, torque about the stylus point
     GateStatus gate = GateStatus::ok;
+    double passivity = 1;        ///< scale of the passivity controller
     std::int64_t tick_ns = 0;    ///< work in this tick [ns]
     std::uint64_t overruns = 0;  ///< so far
     bool calibrated = false;
@@ -113,11 +110,8 @@ class HapticDevice {
       : solver_(solver),
         params_(params),
         period_(1000000000 / static_cast<std::int64_t>((std::max)(params.rate, 1ul))),
-        gate_(params.gate) {
+        chain_(std::in_place, solver, params.chain) {
     if (params.rate < 1) fail("HapticDevice", "rate [Hz] must be > 0", static_cast<double>(params.rate));
-    require_positive(params.mapping.scale, "HapticDevice", "mapping.scale must be > 0");
-    if (!params.mapping.is_usable())
-      fail("HapticDevice", "mapping.axes must be a rotation, the rest of it finite");
     recording_.resize(params.record);
 
     drain_on_this_thread();  // the stack may hold errors of whatever ran before
@@ -133,7 +127,7 @@ class HapticDevice {
   HapticDevice(const HapticDevice&) = delete;
   HapticDevice& operator=(const HapticDevice&) = delete;
 
-  /// Sets the rate and starts the scheduler, once. Forces come `gate.arm_after` s after the tool is free of
+  /// Sets the rate and starts the scheduler, once. Forces come `limits.arm_after` s after the tool is free of
   /// contact.
   void start() {
     if (!open_ || started_) fail("HapticDevice", "start() works once, and not after stop()");
@@ -180,11 +174,17 @@ class HapticDevice {
   bool fetch() noexcept { return out_.fetch(); }
   [[nodiscard]] const Record& view() const noexcept { return out_.front(); }
 
-  /// No force from the next tick until the gate arms again: for a scene that was changed under the tool.
+  /// No force from the next tick until the limits arm again: for a scene that was changed under the tool.
   void disarm() noexcept { disarm_request_.store(true, std::memory_order_relaxed); }
 
   [[nodiscard]] const DeviceLimits& limits() const noexcept { return limits_; }
-  [[nodiscard]] const Gate<double>::Params& gate_params() const noexcept { return gate_.params(); }
+  [[nodiscard]] const Gate<double>::Params& gate_params() const noexcept { return chain_->params().limits; }
+  /// The scene's stiffness, `chain.stiffness`, beside what the device bears.
+  [[nodiscard]] StabilityCheck<double> stability() const noexcept {
+    const typename Chain::Params& p = chain_->params();
+    return check_stability(p.stiffness, p.mapping.scale, 1e-9 * static_cast<double>(period_), p.device,
+                           limits_.max_stiffness);
+  }
   /// After stop().
   [[nodiscard]] const ServoStatistics& statistics() const noexcept { return statistics_; }
   /// After stop(): the first `record` ticks.
@@ -224,18 +224,20 @@ class HapticDevice {
     hdGetIntegerv(HD_CALIBRATION_STYLE, &style);
     limits_.has_torque = dof >= 6;
 
-    Gate<double>::Params gate = params_.gate;
+    typename Chain::Params chain = params_.chain;
+    Gate<double>::Params& gate = chain.limits;
     if (limits_.max_force > 0) gate.max_force = (std::min)(gate.max_force, 0.9 * limits_.max_force);
     if (limits_.continuous_force > 0)
       gate.continuous_force = (std::min)(gate.continuous_force, limits_.continuous_force);
-    // Stay inside the device's own limits, so that its amplifiers never drop out: N/ms, mm/s.
-    if (const double limit = ask(HD_SOFTWARE_FORCE_IMPULSE_LIMIT); limit > 0)
-      gate.max_force_rate = (std::min)(gate.max_force_rate, 0.9e3 * limit);
-    if (const double limit = ask(HD_SOFTWARE_VELOCITY_LIMIT); limit > 0)
+    if (const double limit = ask(HD_SOFTWARE_VELOCITY_LIMIT); limit > 0)  // mm/s
       gate.max_speed = (std::min)(gate.max_speed, 0.9e-3 * limit);
+    chain.has_torque = limits_.has_torque;
+    // A stiff wall, touched fast, is more than the usual impulse limit, and the amplifiers would drop out. The
+    // chain looks for jumps itself, and knows how far the tool has moved.
+    hdDisable(HD_SOFTWARE_FORCE_IMPULSE_LIMIT);
     drain_on_this_thread();
     if (!(limits_.max_force > 0)) close_and_fail("the device does not tell its largest force");
-    gate_ = Gate<double>(gate);  // lower limits than params.gate, which has been checked
+    chain_.emplace(solver_, chain);  // lower limits than params.chain's, which has been checked
     if ((style & HD_CALIBRATION_AUTO) != 0) calibration_style_ = HD_CALIBRATION_AUTO;
     if ((style & HD_CALIBRATION_INKWELL) != 0) calibration_style_ = HD_CALIBRATION_INKWELL;
     calibrated_ = calibration_style_ == 0;  // otherwise the servo loop sees to it
@@ -283,16 +285,14 @@ class HapticDevice {
     HDdouble velocity[3] = {}, transform[16] = {};
     hdGetDoublev(HD_CURRENT_VELOCITY, velocity);
     hdGetDoublev(HD_CURRENT_TRANSFORM, transform);
-    record_.pose = params_.mapping.to_scene(pose_of(transform));
     record_.velocity = 1e-3 * Vec3<double>(velocity[0], velocity[1], velocity[2]);
-    record_.result = solver_.tick(record_.pose, record_.dt);
-
-    const Status status = record_.result.status;
-    const bool broken = has(status, Status::invalid_pose) || has(status, Status::non_finite_result);
-    if (broken || !calibrated_ || disarm_request_.exchange(false, std::memory_order_relaxed)) gate_.disarm();
-    record_.output = gate_.pass(params_.mapping.to_device(record_.result.wrench, record_.pose),
-                                has(status, Status::contact), record_.dt, record_.velocity.norm());
-    record_.gate = gate_.status();
+    if (!calibrated_ || disarm_request_.exchange(false, std::memory_order_relaxed)) chain_->disarm();
+    const auto out = chain_->tick(pose_of(transform), record_.dt, record_.velocity.norm());
+    record_.pose = out.tool;
+    record_.result = out.result;
+    record_.output = out.wrench;
+    record_.gate = out.gate;
+    record_.passivity = out.passivity;
 
     const Vec3<double>& f = record_.output.force;
     const HDdouble force[3] = {f.x(), f.y(), f.z()};  // N
@@ -333,13 +333,7 @@ class HapticDevice {
   }
 
   /// After a jump of position or force: no contact state from before may command a force.
-  void forget() noexcept {
-    gate_.disarm();
-    if constexpr (requires {
-                    { solver_.reset() } noexcept;
-                  })
-      solver_.reset();
-  }
+  void forget() noexcept { chain_->reset(); }
 
   void calibrate() noexcept {
     const HDenum status = hdCheckCalibration();
@@ -374,7 +368,7 @@ class HapticDevice {
   Params params_;
   std::int64_t period_;  // nominal [ns]
   DeviceLimits limits_;
-  Gate<double> gate_;
+  std::optional<Chain> chain_;  // made again with the device's limits
 
   HHD device_ = HD_INVALID_HANDLE;
   HDSchedulerHandle operation_ = 0;

@@ -7,7 +7,6 @@
 #include <cstddef>  // NULL, which HD/hd.h uses
 
 #include <HD/hd.h>
-#include <palpate/device/gate.hpp>
 #include <palpate/palpate.hpp>
 
 #include <algorithm>
@@ -17,8 +16,10 @@ using namespace palpate;
 using Touch = ContactSolver<Ellipsoid<double>, LinearForce<double>, CoulombFriction<double>>;
 struct Scene {
   Touch touch;
-  Gate<double> gate{};  // no force before the tool is free; at most 3 N; zero when anything is wrong
-  double peak = 0;      // [N]
+  // No force before the tool is free, at most 3 N, zero when anything is wrong, and never more energy than
+  // the hand has put in. The device's origin is 20 mm above the object's top.
+  ServoChain<Touch> chain{touch, {.mapping = {.offset = {0, 0.06, 0}}, .stiffness = 300}};
+  double peak = 0;  // [N]
 };
 
 HDCallbackCode HDCALLBACK servo(void* data) {  // in the device's own thread, 1,000 times a second
@@ -29,14 +30,13 @@ HDCallbackCode HDCALLBACK servo(void* data) {  // in the device's own thread, 1,
   hdGetDoublev(HD_CURRENT_TRANSFORM, m);  // column by column, mm
   hdGetIntegerv(HD_INSTANTANEOUS_UPDATE_RATE, &rate);
   hdGetIntegerv(HD_CURRENT_BUTTONS, &buttons);
-  Pose<double> pose;  // m; the device's origin is 20 mm above the object's top
-  pose.rotation << m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10];
-  pose.translation = {1e-3 * m[12], 1e-3 * m[13] + 0.06, 1e-3 * m[14]};
-  const auto felt = scene.touch.tick(pose);
-  const auto out = scene.gate.pass(felt.wrench, has(felt.status, Status::contact), 1.0 / rate);
-  hdSetDoublev(HD_CURRENT_FORCE, out.force.data());  // N
+  Pose<double> stylus;  // m
+  stylus.rotation << m[0], m[4], m[8], m[1], m[5], m[9], m[2], m[6], m[10];
+  stylus.translation = {1e-3 * m[12], 1e-3 * m[13], 1e-3 * m[14]};
+  const Vec3<double> force = scene.chain.tick(stylus, 1.0 / rate).wrench.force;
+  hdSetDoublev(HD_CURRENT_FORCE, force.data());  // N
   hdEndFrame(hdGetCurrentDevice());
-  scene.peak = (std::max)(scene.peak, out.force.norm());
+  scene.peak = (std::max)(scene.peak, force.norm());
   return buttons == 0 ? HD_CALLBACK_CONTINUE : HD_CALLBACK_DONE;
 }
 

@@ -3,11 +3,11 @@
 /// @file The example's solver: any object through its samples, on its shape at rest or on that of the last tick.
 
 #include <palpate/detection/swept_pose.hpp>
-#include <palpate/device/energy_limit.hpp>
 #include <palpate/geometry/deformed_surface.hpp>
 #include <palpate/geometry/sampled_surface.hpp>
 #include <palpate/law/friction/power_law.hpp>
 #include <palpate/solver/contact_solver.hpp>
+#include <palpate/solver/largest_stiffness.hpp>
 
 #include <optional>
 
@@ -39,11 +39,10 @@ Solver make_solver(const Body& body, const Tool& tool, Answer answer) {
 }
 
 /// With --detect deformed the object takes the shape of each tick for the next one. The force is not passive by
-/// itself then: a limit stands behind it.
+/// itself then: the device's passivity controller stands behind it.
 class SolverFeel final : public Feel {
  public:
-  SolverFeel(const Options& options, const Body& body, const Tool& tool, Answer answer)
-      : limit_({.centre_of_mass = tool.centre_of_mass, .contact_area = tool.contact_area}) {
+  SolverFeel(const Options& options, const Body& body, const Tool& tool, Answer answer) {
     if (options.sweep > 0) sweep_.emplace(options.sweep);
     if (options.deformed) {
       if (!answer.shape.exists()) refuse("--detect deformed needs a shape");
@@ -59,7 +58,7 @@ class SolverFeel final : public Feel {
     if (sweep_) at = sweep_->advance(solver_->tool(), solver_->object(), X);
     const TickResult<S> result = solver_->tick(at.pose, dt);
     Felt felt;
-    felt.wrench = followed_ ? limit_.pass(result.wrench, X, solver_->contacts()) : result.wrench;
+    felt.wrench = result.wrench;
     felt.pose = at.pose;
     felt.status = result.status | at.status;
     for (const ContactState<S>& contact : solver_->contacts()) {
@@ -78,7 +77,6 @@ class SolverFeel final : public Feel {
   }
   void reset() noexcept override {
     solver_->reset();
-    limit_.reset();
     if (sweep_) sweep_->reset();
   }
   Moved<S> draw(Shape::Contacts contacts, const Shape::Buffer& out) noexcept override {
@@ -87,6 +85,13 @@ class SolverFeel final : public Feel {
   void draw_rest(const Shape::Buffer& out) noexcept override { solver_->draw_rest(out); }
   [[nodiscard]] std::size_t tool_points() const noexcept override { return solver_->tool().size(); }
   [[nodiscard]] S highest_bulge() const noexcept override { return highest_; }
+  [[nodiscard]] S stiffness_below(const V& from, S travel, S force) const override {
+    Pose<S> X;
+    X.translation = from;
+    return largest_stiffness(*solver_,
+                             {.from = X, .along = -V::UnitY(), .travel = travel, .max_force = force})
+        .translation;
+  }
 
  private:
   [[nodiscard]] Shape::Buffer positions() noexcept {
@@ -95,8 +100,7 @@ class SolverFeel final : public Feel {
 
   std::optional<Solver> solver_;
   std::optional<SweptPose<S>> sweep_;  ///< holds the tool back; empty: never
-  EnergyLimit<S> limit_;
-  std::optional<Shape> followed_;  ///< of the servo thread; the solver's own is the one that is drawn
+  std::optional<Shape> followed_;      ///< of the servo thread; the solver's own is the one that is drawn
   std::vector<V> position_;
   S highest_ = 0;
 };

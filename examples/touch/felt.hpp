@@ -38,6 +38,8 @@ class Feel {
   [[nodiscard]] virtual std::size_t tool_points() const noexcept = 0;
   /// Of the shape, where detection follows it [m].
   [[nodiscard]] virtual S highest_bulge() const noexcept { return 0; }
+  /// Largest tangent stiffness met when the upright tool is pressed down from here, to that force [N/m].
+  [[nodiscard]] virtual S stiffness_below(const V& from, S travel, S force) const = 0;
 };
 
 [[nodiscard]] std::unique_ptr<Feel> make_feel(const Options&, const Body&, const Tool&, Answer);

@@ -34,13 +34,14 @@ void write_csv(const std::string& file, const Device& device) {
 void print_summary(const Device& device) {
   const auto& s = device.statistics();
   double peak = 0;
-  std::size_t contact = 0, sliding = 0, gaps = 0, held = 0;
+  std::size_t contact = 0, sliding = 0, gaps = 0, held = 0, softened = 0;
   for (std::size_t i = 0; i < device.recorded(); ++i) {
     const auto& felt = device.recording()[i].result;
     peak = (std::max)(peak, felt.wrench.force.norm());
     contact += felt.regions > 0;
     sliding += felt.sliding;
     held += has(felt.status, palpate::Status::held_back);
+    softened += device.recording()[i].passivity < 1;
     gaps += has(device.recording()[i].gate, palpate::GateStatus::gap);
   }
   const auto us = [&](double q) { return 1e-3 * static_cast<double>(s.tick_time.quantile(q)); };
@@ -64,6 +65,7 @@ void print_summary(const Device& device) {
   }
   std::printf("peak force     %.2f N\n", peak);
   std::printf("in contact     %zu ticks: %.0f %% stick, %.0f %% slip\n", contact, 100 - share, share);
+  if (softened > 0) std::printf("softened       %zu ticks, by the passivity controller\n", softened);
   if (held > 0) std::printf("held back      %zu ticks\n", held);
 }
 
@@ -74,8 +76,9 @@ int perform(const Options& options, Feel& feel, const Tool& tool, const Script& 
             const std::function<void(const Device&)>& finish) {
   Device::Params params;
   params.rate = static_cast<unsigned long>(options.rate);
-  params.mapping.offset = top;
-  params.mapping.centre_of_mass = tool.centre_of_mass;
+  params.chain.mapping.offset = top;
+  params.chain.mapping.centre_of_mass = tool.centre_of_mass;
+  params.chain.stiffness = feel.stiffness_below(top, 0.1, 3);
   params.record = static_cast<std::size_t>(1.2 * script.seconds * options.rate);
 
 #ifdef PALPATE_STANDIN
@@ -90,7 +93,7 @@ int perform(const Options& options, Feel& feel, const Tool& tool, const Script& 
   struct Hand {
     const Script& script;
     V offset;
-  } hand{script, params.mapping.offset};
+  } hand{script, top};
   standin::script(
       [](double t, standin::Target& target, void* user) {
         const Hand& h = *static_cast<Hand*>(user);
@@ -106,6 +109,11 @@ int perform(const Options& options, Feel& feel, const Tool& tool, const Script& 
   Device device(feel, params);
   std::printf("%s, tool of %zu points, device \"%s\", %s, %.1f s\n", title.c_str(), feel.tool_points(),
               device.limits().model, options.stepped ? "stepped" : "real time", script.seconds);
+  const auto stability = device.stability();
+  std::printf(
+      "stiffness      %.0f N/m at 3 N; passive for any hand below %.0f, device's own figure %.0f. %s\n",
+      stability.stiffness, (std::min)(stability.passive, stability.quantised), stability.nominal,
+      stability.advice());
   device.start();
   const bool terminal = is_terminal();
   for (double seconds = 0; seconds < script.seconds && device.running();) {

@@ -76,13 +76,18 @@
 #include <palpate/solver/contact_solver.hpp>
 #include <palpate/solver/aliases.hpp>
 #include <palpate/solver/stiffness.hpp>
+#include <palpate/solver/largest_stiffness.hpp>
 #include <palpate/solver/wrench_ramp.hpp>
 
 // device: out to the hand
-#include <palpate/device/energy_limit.hpp>
+#include <palpate/device/device_model.hpp>
+#include <palpate/device/stability_check.hpp>
+#include <palpate/device/virtual_coupling.hpp>
 #include <palpate/device/gate.hpp>
+#include <palpate/device/passivity_controller.hpp>
 #include <palpate/device/servo_statistics.hpp>
 #include <palpate/device/spsc_ring.hpp>
 #include <palpate/device/triple_buffer.hpp>
 #include <palpate/device/workspace.hpp>
+#include <palpate/device/servo_chain.hpp>
 // clang-format on

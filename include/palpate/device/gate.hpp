@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  The last stage before the motors. Whatever the solver, the scene or the scheduler does, what leaves
-/// here is finite, bounded, free of jumps while armed, and zero when something is wrong.
+/// @file  Limits before the motors. Whatever the solver, the scene or the scheduler does, what leaves here is
+/// finite, bounded, and zero when something is wrong.
 
 #include <palpate/config.hpp>
 #include <palpate/core/error.hpp>
@@ -22,9 +22,9 @@ enum class GateStatus : std::uint32_t {
   armed = 1u << 0,             ///< force may pass
   ramping = 1u << 1,           ///< armed, and still below full gain
   in_contact = 1u << 2,        ///< not armed because the tool touches: pull it free first
-  force_saturated = 1u << 3,   ///< force scaled down, direction kept
-  torque_saturated = 1u << 4,  ///< torque scaled down, direction kept
-  slew_limited = 1u << 5,      ///< the output moved toward the demand as fast as it may
+  force_saturated = 1u << 3,   ///< wrench scaled down for its force, directions kept
+  torque_saturated = 1u << 4,  ///< wrench scaled down for its torque, directions kept
+  jump = 1u << 5,              ///< tripped: the demand changed by more than the tool's motion explains
   heat_limited = 1u << 6,      ///< the long-term budget has lowered the force limit
   non_finite = 1u << 7,        ///< tripped: NaN, infinity or more than 1e9 in the wrench
   invalid_step = 1u << 8,      ///< tripped: dt is not finite, or negative
@@ -45,36 +45,40 @@ constexpr GateStatus& operator|=(GateStatus& a, GateStatus b) noexcept { return 
 /// Limits, arming and watchdog between a solver and a haptic device. No equation of the paper: own choice,
 /// after the practice of device libraries.
 ///
-/// A *trip* (bad number, gap, over-speed, disarm()) gives zero at once and disarms. Armed again after
+/// A *trip* (bad number, jump, gap, over-speed, disarm()) gives zero at once and disarms. Armed again after
 /// `arm_after` seconds without a trip and without contact, so that no force starts inside an object; then the
-/// gain rises linearly from 0 to 1 over `ramp_time`. Armed, the stages are
+/// gain rises linearly from 0 to 1 over `ramp_time`. Armed, the output is
 ///
-///   f1 = gain f,   f2 = f1 min(1, L/|f1|),   f3 = last + (f2 - last) min(1, r dt/|f2 - last|)
+///   (f, tau) gain min(1, L/|gain f|, max_torque/|gain tau|)
 ///
-/// with r = max_force_rate and L the force limit: `max_force`, lowered toward `continuous_force` Fc by a heat
-/// estimate q' = (|f3|^2 - q)/heat_time: L = max_force for q <= Fc^2/2, falling linearly to Fc at q = Fc^2.
-/// A demand above Fc that lasts ends at Fc. Torque goes through the same stages without the heat
-/// estimate. The output is continuous in the input except for a trip's drop to zero; |force| <= max_force
-/// always.
+/// with L the force limit: `max_force`, lowered toward `continuous_force` Fc by a heat estimate q' = (|f|^2
+/// - q)/heat_time of what left: L = max_force for q <= Fc^2/2, falling linearly to Fc at q = Fc^2. A demand
+/// above Fc that lasts ends at Fc. Force and torque are scaled together: the tool is pushed along the same
+/// screw. The output is continuous in the input except for a trip's drop to zero;
+/// |force| <= max_force always.
 ///
-/// What it does not do: it cannot make a scene passive whose stiffness exceeds 2 b/T (docs/device.md)
-/// [colgate1997]. Time and memory: no heap, no lock, no loop. One gate belongs to one thread.
+/// A jump is a change of the demanded force from one call to the next by more than `explained`, which the
+/// caller works out from stiffness and motion (ServoChain does): a scene that was changed under the tool. A
+/// limit of the rate in its place would act in normal touch, and energy comes from what is held back.
+///
+/// What it does not do: it cannot make a scene passive (PassivityController does). Time and memory: no heap,
+/// no lock, no loop. One gate belongs to one thread.
 template <Real S>
 class Gate {
  public:
-  /// Limits are in [1e-6, 1e9], waits >= 0. Infinity switches off `max_force_rate`, `max_torque_rate`,
-  /// `max_speed` and `continuous_force`; nothing else.
+  static constexpr bool active = true;
+
+  /// Limits are in [1e-6, 1e9], waits >= 0. Infinity switches off `max_speed` and `continuous_force`; nothing
+  /// else.
   struct Params {
     S max_force = S(3);  ///< [N]. 0.9 of the 3.3 N peak of the weakest common device
     S continuous_force = std::numeric_limits<S>::infinity();  ///< [N]: what the motors bear for ever
-    S heat_time = S(10);        ///< time constant of the heat estimate [s]; of the order of small motors'
-    S max_torque = S(0.17);     ///< [N m]. 0.9 of the 0.188 N m of a common 6-DOF device
-    S max_force_rate = S(500);  ///< [N/s]. Reached by 500 N/m at 1 m/s: idle in normal use, catches jumps
-    S max_torque_rate = S(25);  ///< [N m/s]. The force rate at a 0.05 m arm
-    S arm_after = S(0.5);       ///< time free of contact before force [s], >= 0: a human can let go in it
-    S ramp_time = S(0.5);       ///< [s], >= 0; chosen
-    S max_gap = S(5e-3);        ///< longest step [s]: five periods at 1 kHz; the hand moves 5 mm at 1 m/s
-    S max_speed = S(1.5);       ///< of the device's tip [m/s]: faster is a fault or an arm let go
+    S heat_time = S(10);     ///< time constant of the heat estimate [s]; of the order of small motors'
+    S max_torque = S(0.17);  ///< [N m]. 0.9 of the 0.188 N m of a common 6-DOF device
+    S arm_after = S(0.5);    ///< time free of contact before force [s], >= 0: a human can let go in it
+    S ramp_time = S(0.5);    ///< [s], >= 0; chosen
+    S max_gap = S(5e-3);     ///< longest step [s]: five periods at 1 kHz; the hand moves 5 mm at 1 m/s
+    S max_speed = S(1.5);    ///< of the device's tip [m/s]: faster is a fault or an arm let go
   };
 
   Gate() : Gate(Params{}) {}
@@ -94,9 +98,6 @@ class Gate {
       if (!is_infinity(value)) check(value, rule);
       return is_infinity(value) ? max_limit : value;
     };
-    force_rate_ = limit(params.max_force_rate, "max_force_rate [N/s] must be in [1e-6, 1e9] or infinity");
-    torque_rate_ =
-        limit(params.max_torque_rate, "max_torque_rate [N m/s] must be in [1e-6, 1e9] or infinity");
     max_speed_ = limit(params.max_speed, "max_speed [m/s] must be in [1e-6, 1e9] or infinity");
     // A budget above the peak never acts.
     continuous_ =
@@ -105,18 +106,24 @@ class Gate {
   }
 
   /// What may go to the motors for the demand `wrench`. `contact`: the solver's, true when anything touches.
-  /// `dt`: time since the last call [s]; 0 is allowed and keeps the output. `speed`: of the tip [m/s].
-  [[nodiscard]] Wrench<S> pass(const Wrench<S>& wrench, bool contact, S dt, S speed = S(0)) noexcept {
+  /// `dt`: time since the last call [s], 0 is allowed. `speed`: of the tip [m/s]. `explained`: how much the
+  /// force may have changed since the last call [N].
+  [[nodiscard]] Wrench<S> pass(const Wrench<S>& wrench, bool contact, S dt, S speed = S(0),
+                               S explained = max_limit) noexcept {
     status_ = GateStatus::ok;
     if (!is_finite(dt) || dt < S(0)) {
       trip(GateStatus::invalid_step);
     } else {
-      const S load = last_.force.norm() / continuous_;
+      const S load = last_force_ / continuous_;
       heat_ += (load * load - heat_) * (std::min)(S(1), dt / params_.heat_time);
       if (dt > params_.max_gap) trip(GateStatus::gap);
     }
     if (!is_finite(speed) || speed > max_speed_) trip(GateStatus::over_speed);
-    if (!is_sane(wrench.force) || !is_sane(wrench.torque)) trip(GateStatus::non_finite);
+    if (!is_sane(wrench.force) || !is_sane(wrench.torque))
+      trip(GateStatus::non_finite);
+    else if (armed_ && !((wrench.force - demand_).norm() <= explained))
+      trip(GateStatus::jump);
+    demand_ = is_sane(wrench.force) ? wrench.force : Vec3<S>(Vec3<S>::Zero());
     if (disarm_) trip(GateStatus::disarmed);
     disarm_ = false;
     if (status_ != GateStatus::ok) return Wrench<S>{};
@@ -140,14 +147,14 @@ class Gate {
 
     const S limit = force_limit();
     if (limit < params_.max_force) status_ |= GateStatus::heat_limited;
-    last_.force =
-        advance(last_.force, bounded(Vec3<S>(gain * wrench.force), limit, GateStatus::force_saturated),
-                force_rate_ * dt, params_.max_force);
-    last_.torque =
-        advance(last_.torque,
-                bounded(Vec3<S>(gain * wrench.torque), params_.max_torque, GateStatus::torque_saturated),
-                torque_rate_ * dt, params_.max_torque);
-    return last_;
+    const Wrench<S> raised{gain * wrench.force, gain * wrench.torque};
+    const S by_force = factor(raised.force, limit), by_torque = factor(raised.torque, params_.max_torque);
+    if (by_force < S(1)) status_ |= GateStatus::force_saturated;
+    if (by_torque < S(1)) status_ |= GateStatus::torque_saturated;
+    const S both = (std::min)(by_force, by_torque);
+    const Wrench<S> out{both * raised.force, both * raised.torque};
+    last_force_ = out.force.norm();
+    return out;
   }
 
   /// Zero and disarmed from the next pass() on: for the host's reasons, such as an error of the device.
@@ -177,7 +184,7 @@ class Gate {
     status_ |= why;
     armed_ = false;
     free_ = gain_ = S(0);
-    last_ = Wrench<S>{};
+    last_force_ = S(0);
   }
 
   [[nodiscard]] S force_limit() const noexcept {
@@ -186,31 +193,18 @@ class Gate {
     return params_.max_force + (std::min)(used, S(1)) * (continuous_ - params_.max_force);
   }
 
-  [[nodiscard]] Vec3<S> bounded(const Vec3<S>& v, S limit, GateStatus bit) noexcept {
-    const Vec3<S> inside = clamp_norm(v, limit);
-    if (inside != v) status_ |= bit;
-    return inside;
-  }
-
-  [[nodiscard]] Vec3<S> advance(const Vec3<S>& last, const Vec3<S>& wanted, S step, S limit) noexcept {
-    const Vec3<S> move = wanted - last;
-    const Vec3<S> allowed = clamp_norm(move, step);
-    if (allowed == move) return wanted;
-    status_ |= GateStatus::slew_limited;
-    return clamp_norm(Vec3<S>(last + allowed), limit);  // inside the ball but for rounding
-  }
-
-  // v scaled to |v| <= limit.
-  [[nodiscard]] static Vec3<S> clamp_norm(const Vec3<S>& v, S limit) noexcept {
+  /// What brings v to |v| <= limit.
+  [[nodiscard]] static S factor(const Vec3<S>& v, S limit) noexcept {
     const S norm = v.norm();
-    if (norm <= limit) return v;
-    return v * (limit / norm * (S(1) - S(4) * std::numeric_limits<S>::epsilon()));  // rounding stays inside
+    if (norm <= limit) return S(1);
+    return limit / norm * (S(1) - S(4) * std::numeric_limits<S>::epsilon());  // rounding stays inside
   }
 
   Params params_;
-  S force_rate_ = S(0), torque_rate_ = S(0), max_speed_ = S(0), continuous_ = S(0);
-  Wrench<S> last_;
-  S free_ = S(0);  // time without contact and trip [s]
+  S max_speed_ = S(0), continuous_ = S(0);
+  Vec3<S> demand_ = Vec3<S>::Zero();  // the last one's force
+  S last_force_ = S(0);               // |force| that left last
+  S free_ = S(0);                     // time without contact and trip [s]
   S gain_ = S(0);
   S heat_ = S(0);  // mean square force / continuous_^2
   bool armed_ = false;

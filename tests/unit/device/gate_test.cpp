@@ -52,8 +52,7 @@ std::string message_of(auto&& build) {
 
 TEST_CASE_TEMPLATE("gate, start: zero for arm_after, then a linear ramp, then the demand itself", S, float,
                    double) {
-  Gate<S> gate(
-      {.max_force_rate = infinity<S>, .arm_after = S(0.25), .ramp_time = S(0.5), .max_gap = S(0.25)});
+  Gate<S> gate({.arm_after = S(0.25), .ramp_time = S(0.5), .max_gap = S(0.25)});
   const S dt = S(1) / S(64);  // exact in binary, so that the sums below are
   const auto w = push<S>(S(0.5), S(-0.25));
   for (int i = 1; i <= 15; ++i) {
@@ -70,7 +69,7 @@ TEST_CASE_TEMPLATE("gate, start: zero for arm_after, then a linear ramp, then th
 }
 
 TEST_CASE_TEMPLATE("gate, start: torque rises as force does", S, float, double) {
-  Gate<S> gate({.max_torque_rate = infinity<S>, .arm_after = S(0), .ramp_time = S(0.5), .max_gap = S(0.25)});
+  Gate<S> gate({.arm_after = S(0), .ramp_time = S(0.5), .max_gap = S(0.25)});
   Wrench<S> w;
   w.torque = Vec3<S>(S(0.125), S(0), S(-0.0625));
   for (int i = 0; i < 32; ++i)
@@ -94,42 +93,44 @@ TEST_CASE_TEMPLATE("gate, start inside an object: no force until the tool has be
   CHECK(gate.armed());
 }
 
-TEST_CASE_TEMPLATE("gate, saturation: never above the limit, direction kept, whatever the size", S, float,
+TEST_CASE_TEMPLATE("gate, saturation: force and torque are scaled together, never above a limit", S, float,
                    double) {
-  auto gate = armed<S>({.max_force = S(2),
-                        .max_torque = S(0.1),
-                        .max_force_rate = infinity<S>,
-                        .max_torque_rate = infinity<S>});
+  auto gate = armed<S>({.max_force = S(2), .max_torque = S(0.1)});
   const Vec3<S> direction = Vec3<S>(S(1), S(-2), S(2)) / S(3);
-  for (S size : {S(1.99), S(2.01), S(1e3), S(9e8)}) {
-    Wrench<S> w;
-    w.force = w.torque = size * direction;
+  struct Case {
+    S force, torque, scale;  // scale: the smaller of 2 / force, 0.1 / torque and 1
+  };
+  for (const Case c : {Case{S(1.99), S(0.09), S(1)}, Case{S(4), S(0.09), S(0.5)}, Case{S(1), S(0.4), S(0.25)},
+                       Case{S(4), S(0.8), S(0.125)}, Case{S(9e8), S(9e8), S(0.1) / S(9e8)}}) {
+    const Wrench<S> w{c.force * direction, -c.torque * direction};
     const Wrench<S> out = gate.pass(w, true, ms<S>);
     CHECK(out.force.norm() <= S(2));
     CHECK(out.torque.norm() <= S(0.1));
-    // A normalisation and a product: a few roundings.
-    CHECK_ABSOLUTE((out.force / out.force.norm() - direction).norm(), 0, palpate::test::ulps<S>(8));
-    CHECK_RELATIVE(out.force.norm(), (std::min)(size, S(2)), palpate::test::ulps<S>(16));
-    CHECK(has(gate.status(), GateStatus::force_saturated) == (size > S(2)));
-    CHECK(has(gate.status(), GateStatus::torque_saturated));
+    // A norm, a quotient and a product: a few roundings.
+    CHECK_RELATIVE((out.force - c.scale * w.force).norm() + c.scale * c.force, c.scale * c.force,
+                   palpate::test::ulps<S>(16));
+    CHECK_RELATIVE((out.torque - c.scale * w.torque).norm() + c.scale * c.torque, c.scale * c.torque,
+                   palpate::test::ulps<S>(16));
+    CHECK(has(gate.status(), GateStatus::force_saturated) == (c.force > S(2)));
+    CHECK(has(gate.status(), GateStatus::torque_saturated) == (c.torque > S(0.1)));
   }
 }
 
-TEST_CASE_TEMPLATE("gate, slew: a jump becomes a slope of max_force_rate, both ways", S, float, double) {
-  auto gate = armed<S>({.max_force_rate = S(500)});
-  S last = S(0);
-  int ticks = 0;
-  for (; ticks < 20; ++ticks) {
-    const S now = gate.pass(push<S>(S(2)), true, ms<S>).force.x();
-    CHECK(now - last <= S(0.5) * (1 + S(palpate::test::ulps<S>(8))));
-    last = now;
-    if (!has(gate.status(), GateStatus::slew_limited)) break;
-  }
-  CHECK(ticks <= 4);  // 2 N at 0.5 N per tick; rounding may cost one tick more
-  CHECK(last == S(2));
-  CHECK_RELATIVE(gate.pass({}, false, ms<S>).force.x(), 1.5, palpate::test::ulps<S>(8));
-  // dt = 0: no time has passed, the output holds.
-  CHECK_RELATIVE(gate.pass({}, false, S(0)).force.x(), 1.5, palpate::test::ulps<S>(8));
+TEST_CASE_TEMPLATE("gate, jump: a change that the motion explains passes, a larger one trips", S, float,
+                   double) {
+  auto gate = armed<S>();
+  CHECK(gate.pass(push<S>(S(1)), true, ms<S>, S(0), S(1.25)).force.x() == S(1));
+  CHECK(gate.pass(push<S>(S(2.25)), true, ms<S>, S(0), S(1.25)).force.x() == S(2.25));
+  CHECK(gate.pass(push<S>(S(0.75)), true, ms<S>, S(0), S(1.25)).force == Vec3<S>::Zero());
+  CHECK(gate.status() == GateStatus::jump);
+  // Without a figure no jump is looked for: a wall may be as stiff as it likes.
+  auto other = armed<S>();
+  CHECK(other.pass(push<S>(S(2.5)), true, ms<S>).force.x() == S(2.5));
+  CHECK(other.pass(push<S>(S(0)), false, ms<S>).force.x() == S(0));
+  CHECK(other.armed());
+  // NaN explains nothing.
+  CHECK(other.pass(push<S>(S(0.5)), true, ms<S>, S(0), not_a_number<S>).force == Vec3<S>::Zero());
+  CHECK(other.status() == GateStatus::jump);
 }
 
 TEST_CASE_TEMPLATE("gate, trips: zero at once, disarmed, armed again through wait and ramp", S, float,
@@ -184,8 +185,7 @@ TEST_CASE_TEMPLATE("gate, heat budget: peaks pass, a force held for ever ends at
     const Vec3<S> now = gate.pass(push<S>(S(0), S(5)), true, ms<S>).force;
     peak_passed |= now.y() > S(2.999);
     // The limit falls at most by 2 (3 - 0.88)/0.88^2 times dq = 9 N^2 dt/heat_time: 0.05 N in a tick.
-    CHECK((now - last).norm() <= S(0.5) * (1 + S(palpate::test::ulps<S>(8))));
-    if (i > 20) CHECK((now - last).norm() <= S(0.06));
+    if (i > 0) CHECK((now - last).norm() <= S(0.06));
     last = now;
   }
   CHECK(peak_passed);
@@ -198,8 +198,7 @@ TEST_CASE_TEMPLATE("gate, heat budget: peaks pass, a force held for ever ends at
 
 TEST_CASE_TEMPLATE("gate, heat budget: it is the mean square that counts", S, float, double) {
   // L N in one tick of four: q = L^2/4, and L = 2 - (2 q - 1): L = sqrt(7) - 1. By its mean, L/4, it would stay 2.
-  auto gate = armed<S>(
-      {.max_force = S(2), .continuous_force = S(1), .heat_time = S(2), .max_force_rate = infinity<S>});
+  auto gate = armed<S>({.max_force = S(2), .continuous_force = S(1), .heat_time = S(2)});
   S felt = S(0);
   for (int i = 0; i < 60000; ++i) {
     const S f = gate.pass(push<S>(i % 4 == 0 ? S(2) : S(0)), true, ms<S>).force.x();
@@ -210,12 +209,8 @@ TEST_CASE_TEMPLATE("gate, heat budget: it is the mean square that counts", S, fl
 }
 
 TEST_CASE_TEMPLATE("gate, heat budget: a trip does not cool the motors", S, float, double) {
-  auto gate = armed<S>({.max_force = S(3),
-                        .continuous_force = S(1),
-                        .heat_time = S(2),
-                        .max_force_rate = infinity<S>,
-                        .arm_after = S(0),
-                        .ramp_time = S(0)});
+  auto gate = armed<S>(
+      {.max_force = S(3), .continuous_force = S(1), .heat_time = S(2), .arm_after = S(0), .ramp_time = S(0)});
   for (int i = 0; i < 40000; ++i) (void)gate.pass(push<S>(5), true, ms<S>);
   gate.disarm();
   CHECK(gate.pass(push<S>(5), false, ms<S>).force == Vec3<S>::Zero());
@@ -236,13 +231,12 @@ TEST_CASE_TEMPLATE("gate, one tick: the output is no further apart than the inpu
     b.force += draw().force * S(0.01);
     Gate<S> twin = gate;
     const Vec3<S> out_a = gate.pass(a, true, ms<S>).force, out_b = twin.pass(b, true, ms<S>).force;
-    // Both stages project on a ball, which never stretches; rounding of numbers up to 7 N.
+    // A projection on a ball never stretches; rounding of numbers up to 7 N.
     CHECK((out_a - out_b).norm() <= (a.force - b.force).norm() + S(palpate::test::ulps<S>(64)));
   }
 }
 
-TEST_CASE_TEMPLATE("gate, abuse: any input, bounded output, steps bounded but for the drop to zero", S, float,
-                   double) {
+TEST_CASE_TEMPLATE("gate, abuse: any input, bounded output, zero while not armed", S, float, double) {
   std::mt19937_64 random(11);
   INFO("seed 11");
   Gate<S> gate({.max_force = S(2.5), .continuous_force = S(1), .arm_after = S(0.01), .ramp_time = S(0.02)});
@@ -257,8 +251,6 @@ TEST_CASE_TEMPLATE("gate, abuse: any input, bounded output, steps bounded but fo
                      S(1e-30)};
   std::uniform_real_distribution<S> uniform(S(-6), S(6));
   const auto number = [&] { return random() % 400 == 0 ? weird[random() % 8] : uniform(random); };
-  Vec3<S> last = Vec3<S>::Zero();
-  Vec3<S> last_torque = Vec3<S>::Zero();
   int trips = 0, full = 0;
   for (int i = 0; i < 100000; ++i) {
     Wrench<S> w;
@@ -276,13 +268,8 @@ TEST_CASE_TEMPLATE("gate, abuse: any input, bounded output, steps bounded but fo
       REQUIRE(out.force == Vec3<S>::Zero());
       ++trips;
     } else {
-      // 500 N/s; rounding of numbers up to 2.5 N.
-      REQUIRE((out.force - last).norm() <= S(500) * dt + S(palpate::test::ulps<S>(32)));
-      REQUIRE((out.torque - last_torque).norm() <= S(25) * dt + S(palpate::test::ulps<S>(32)));
-      full += out.force.norm() > S(0.9);
+      full += out.torque.norm() > S(0.16);  // torques of 6 N m: it is the torque that binds
     }
-    last = out.force;
-    last_torque = out.torque;
   }
   CHECK(trips > 100);  // the test must have been where it matters
   CHECK(full > 1000);
@@ -297,8 +284,6 @@ TEST_CASE("gate, set-up: each bad limit is named with its value; infinity is all
     CHECK(message_of([&] { G g({.continuous_force = v}); }).find("continuous_force") != std::string::npos);
     CHECK(message_of([&] { G g({.heat_time = v}); }).find("heat_time") != std::string::npos);
     CHECK(message_of([&] { G g({.max_torque = v}); }).find("max_torque [N m] must be") != std::string::npos);
-    CHECK(message_of([&] { G g({.max_force_rate = v}); }).find("max_force_rate") != std::string::npos);
-    CHECK(message_of([&] { G g({.max_torque_rate = v}); }).find("max_torque_rate") != std::string::npos);
     CHECK(message_of([&] { G g({.max_gap = v}); }).find("max_gap") != std::string::npos);
     CHECK(message_of([&] { G g({.max_speed = v}); }).find("max_speed") != std::string::npos);
   }
@@ -309,13 +294,9 @@ TEST_CASE("gate, set-up: each bad limit is named with its value; infinity is all
   CHECK(message_of([] { G g({.max_force = infinity<double>}); }).find("max_force") != std::string::npos);
   CHECK(message_of([] { G g({.max_gap = infinity<double>}); }).find("max_gap") != std::string::npos);
   CHECK(message_of([] { G g({.max_force = -2}); }).find("-2") != std::string::npos);
-  CHECK(message_of([] {
-          G g({.continuous_force = infinity<double>,
-               .max_force_rate = infinity<double>,
-               .max_torque_rate = infinity<double>,
-               .max_speed = infinity<double>});
-        }).empty());
+  CHECK(
+      message_of([] { G g({.continuous_force = infinity<double>, .max_speed = infinity<double>}); }).empty());
   // No wait and no ramp: armed at the first tick that is free of contact.
-  G g({.max_force_rate = infinity<double>, .arm_after = 0, .ramp_time = 0});
+  G g({.arm_after = 0, .ramp_time = 0});
   CHECK(g.pass(push<double>(1), false, 1e-3).force.x() == 1);
 }
