@@ -4,6 +4,7 @@
 /// @file  The tool as the force sees it: points with areas, in a tree of bounding spheres; or one point.
 
 #include <palpate/core/pose.hpp>
+#include <palpate/detection/detail/position_order.hpp>
 #include <palpate/detection/resample.hpp>
 #include <palpate/geometry/triangle_mesh.hpp>
 
@@ -31,9 +32,11 @@ struct PointTool {
 /// a flat face, shorter over an edge. It is known where the tool is a mesh; `SurfacePressure` needs it
 /// (contact/mass_sharing.hpp).
 ///
-/// Points are sorted by position: `original(i)` is the number that point i had when it was given. The tree's
-/// nodes are in pre-order, a node's points are contiguous, leaves have at most `batch_size`; a walk needs no
-/// stack (candidates.hpp). Constructors report what is out of range; `spacing` as resample().
+/// Points are sorted by position: `original(i)` is the number that point i had when it was given. In what
+/// order they were given changes nothing, unless two stand at the same position; nor does the unit of
+/// length (detail/position_order.hpp). The tree's nodes are in pre-order, a node's points are contiguous,
+/// leaves have at most `batch_size`; a walk needs no stack (candidates.hpp). Constructors report what is
+/// out of range; `spacing` as resample().
 template <Real S>
 class ToolPoints {
  public:
@@ -94,7 +97,7 @@ class ToolPoints {
     }
     original_.resize(points.size());
     std::iota(original_.begin(), original_.end(), 0u);
-    build(points, 0, static_cast<std::uint32_t>(points.size()));
+    build(points, detail::PositionOrder<S>(points, areas), 0, static_cast<std::uint32_t>(points.size()));
     points_.reserve(points.size());
     areas_.reserve(points.size());
     for (const std::uint32_t i : original_) {
@@ -142,7 +145,8 @@ class ToolPoints {
  private:
   static constexpr std::uint32_t leaf_size = static_cast<std::uint32_t>(batch_size);
 
-  void build(const std::vector<Vec3<S>>& points, std::uint32_t begin, std::uint32_t end) {
+  void build(const std::vector<Vec3<S>>& points, const detail::PositionOrder<S>& order, std::uint32_t begin,
+             std::uint32_t end) {
     const std::size_t index = nodes_.size();
     Vec3<S> low = points[original_[begin]], high = low;
     for (std::uint32_t i = begin; i < end; ++i) {
@@ -155,17 +159,16 @@ class ToolPoints {
       radius = (std::max)(radius, (points[original_[i]] - centre).norm());
     nodes_.push_back({centre, radius * (S(1) + S(8) * std::numeric_limits<S>::epsilon()), begin, end, 0});
     if (end - begin > leaf_size) {
-      int axis = 0;
-      (high - low).maxCoeff(&axis);
+      const std::size_t axis = order.longest_axis(std::span(original_).subspan(begin, end - begin));
       // Whole leaves to the left, so that leaves are full.
       const std::uint32_t middle = begin + ((end - begin + 2 * leaf_size - 1) / (2 * leaf_size)) * leaf_size;
       std::nth_element(original_.begin() + begin, original_.begin() + middle, original_.begin() + end,
-                       [&](std::uint32_t l, std::uint32_t r) {
-                         return points[l][axis] < points[r][axis] ||
-                                (points[l][axis] == points[r][axis] && l < r);
-                       });
-      build(points, begin, middle);
-      build(points, middle, end);
+                       [&](std::uint32_t l, std::uint32_t r) { return order.less(l, r, axis); });
+      build(points, order, begin, middle);
+      build(points, order, middle, end);
+    } else {
+      std::sort(original_.begin() + begin, original_.begin() + end,
+                [&](std::uint32_t l, std::uint32_t r) { return order.less(l, r, 0); });
     }
     nodes_[index].skip = static_cast<std::uint32_t>(nodes_.size());
   }

@@ -35,7 +35,7 @@ concept SampledBody = HasClosest<B> && HasReach<B> && requires(const B& body) {
 /// no curl, so a closed path gains no energy. Where d is smooth the error is of order w^3 in depth and w^2 in
 /// direction [deboor1978]; edges of the mesh and of the body are rounded over about w, and parts thinner than
 /// about 2 w lose depth (|depth + d| <= 1.62 w anywhere: d has slope at most 1, and so has each term).
-/// Samples are float: depth is rounded to about 1e-7 of the body's size.
+/// Samples are float, in units of w: depth is rounded to about 1e-7 of the body's size, in any unit alike.
 ///
 /// closest() is the body's own. Set-up asks it once for each node inside and near the body; a bad spacing is
 /// reported. A query that is not finite: no contact, not separated.
@@ -78,14 +78,14 @@ class SampledSurface {
     std::array<float, 3> t;
     if (!locate(x, node, t)) return none;
     const float* const at = &field_[index(node)];
-    if (*at > clear_) return none;
+    if (*at > clear) return none;
     const Spline<float> wx(t[0]);
     const Rows rows = rows_around(at, Spline<float>(t[1]), Spline<float>(t[2]));
     const float d = wx.sum(rows.value);
     if (!(d < 0.0f)) return none;
-    return {-static_cast<S>(d),
-            per_w_ * Vec3<S>(static_cast<S>(wx.slope_sum(rows.value)), static_cast<S>(wx.sum(rows.along_y)),
-                             static_cast<S>(wx.sum(rows.along_z)))};
+    return {-w_ * static_cast<S>(d),
+            Vec3<S>(static_cast<S>(wx.slope_sum(rows.value)), static_cast<S>(wx.sum(rows.along_y)),
+                    static_cast<S>(wx.sum(rows.along_z)))};
   }
 
   /// The same of a batch.
@@ -113,19 +113,18 @@ class SampledSurface {
       rows[i] = Rows{};
       if (!has_cell(Vec3<S>(u[0][i], u[1][i], u[2][i]))) continue;
       const float* const here = &field_[static_cast<std::size_t>(at[i])];
-      if (*here > clear_) continue;
+      if (*here > clear) continue;
       rows[i] = rows_around(here, wy.at(i), wz.at(i));
     }
     for (std::size_t i = 0; i < batch_size; i += Four::size()) {
       const Spline<Four> w = wx.four(i);
       const auto value = columns(rows, i, &Rows::value);
-      const auto put = [i](const Four& v, S factor, std::array<S, batch_size>& out) PALPATE_INLINE_LAMBDA {
-        detail::store(&out[i], detail::simd_cast<S>(v) * factor);
-      };
-      put((detail::max)(-w.sum(value), 0.0f), S(1), in.depth);
-      put(w.slope_sum(value), per_w_, in.gradient_x);
-      put(w.sum(columns(rows, i, &Rows::along_y)), per_w_, in.gradient_y);
-      put(w.sum(columns(rows, i, &Rows::along_z)), per_w_, in.gradient_z);
+      const auto put = [i](const Four& v, std::array<S, batch_size>& out)
+                           PALPATE_INLINE_LAMBDA { detail::store(&out[i], detail::simd_cast<S>(v)); };
+      detail::store(&in.depth[i], detail::simd_cast<S>((detail::max)(-w.sum(value), 0.0f)) * w_);
+      put(w.slope_sum(value), in.gradient_x);
+      put(w.sum(columns(rows, i, &Rows::along_y)), in.gradient_y);
+      put(w.sum(columns(rows, i, &Rows::along_z)), in.gradient_z);
     }
   }
 
@@ -140,9 +139,9 @@ class SampledSurface {
     std::array<float, 3> t;
     if (!locate(c, node, t)) return false;
     const S here = static_cast<S>(field_[index(node)]);
-    if (here - margin * w_ > r) return true;
+    if ((here - margin) * w_ > r) return true;
     const std::array<std::size_t, 3> b{node[0] / 4, node[1] / 4, node[2] / 4};
-    const S block = static_cast<S>(block_[(b[2] * blocks_[1] + b[1]) * blocks_[0] + b[0]]);
+    const S block = w_ * static_cast<S>(block_[(b[2] * blocks_[1] + b[1]) * blocks_[0] + b[0]]);
     return block - (c - centre(b)).norm() > apart;
   }
 
@@ -157,6 +156,7 @@ class SampledSurface {
   // 1.62 w of d, together 3.24 w: a coefficient of more than `margin` has no contact in its cell. `far` is
   // chosen: more than that, and few enough nodes.
   static constexpr S margin = S(3.25L), far = S(8);  // of samples that do not count
+  static constexpr float clear = 3.25f;              // margin
 
   /// The three quadratic B-splines that are not 0 at an offset t in [-1/2, 1/2] from a node, and their
   /// derivatives.
@@ -260,19 +260,19 @@ class SampledSurface {
 
   void sample() {
     const std::array<std::size_t, 3> n{4 * blocks_[0], 4 * blocks_[1], 4 * blocks_[2]};
-    std::vector<float> f(layer_ * n[2], static_cast<float>(far * w_));
+    std::vector<float> f(layer_ * n[2], static_cast<float>(far));
     for (std::size_t c = 0; c < blocks_[2]; ++c) {
       for (std::size_t b = 0; b < blocks_[1]; ++b) {
         for (std::size_t a = 0; a < blocks_[0]; ++a) {
           const S d = body_.closest(centre({a, b, c})).distance;
-          block_.push_back(static_cast<float>(d));
+          block_.push_back(static_cast<float>(d * per_w_));
           // The farthest node of a block is sqrt(3) 1.5 w = 2.6 w from its middle.
           if (d > (far + S(2.6L)) * w_) continue;
           for (std::size_t i = 0; i < 64; ++i) {
             const std::size_t x = 4 * a + i % 4, y = 4 * b + i / 4 % 4, z = 4 * c + i / 16;
             const Vec3<S> at =
                 origin_ + w_ * Vec3<S>(static_cast<S>(x), static_cast<S>(y), static_cast<S>(z));
-            f[index({x, y, z})] = static_cast<float>((std::min)(body_.closest(at).distance, far * w_));
+            f[index({x, y, z})] = static_cast<float>((std::min)(body_.closest(at).distance * per_w_, far));
           }
         }
       }
@@ -291,7 +291,6 @@ class SampledSurface {
         }
       }
     }
-    clear_ = static_cast<float>(margin * w_);
   }
 
   B body_;
@@ -300,9 +299,8 @@ class SampledSurface {
   std::array<std::size_t, 3> blocks_;  // along each axis
   std::array<S, 3> middle_;            // of the grid, in units of w from the first node
   std::size_t row_, layer_;            // nodes in each
-  std::vector<float> field_;           // c, x fastest
-  std::vector<float> block_;           // d at the middle of each block
-  float clear_ = 0;                    // margin w
+  std::vector<float> field_;           // c/w, x fastest
+  std::vector<float> block_;           // d/w at the middle of each block
 };
 
 }  // namespace palpate

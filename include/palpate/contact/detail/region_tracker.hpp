@@ -224,7 +224,7 @@ class RegionTracker {
     S min_distance = std::numeric_limits<S>::infinity();
     for (std::size_t k = 0; k < N; ++k) {
       const S distance = (position(queue_[components_[owner[k]].begin]) - from).squaredNorm();
-      if (distance < min_distance) {
+      if (distance < min_distance * detail::PointGrid<S>::tie) {  // of equal ones the lower slot
         min_distance = distance;
         best = k;
       }

@@ -73,6 +73,8 @@ class ToolPatches {
   static constexpr double min_eigenvalue = 1e-3;
   // A round face of area A_0 is 2 a across, a square one 2.51 a.
   static constexpr double whole_within = 2.6;
+  // Distances whose ratio is nearer to 1 are equal: the earlier patch or point counts, in the tool's order.
+  static constexpr double tie = 1 - 1e-6;
   // Within one part of the tool patches are uncoupled up to 2 a and wholly coupled from 3 a on (chosen).
   static constexpr double uncoupled_within = 2, coupled_from = 3;
 
@@ -116,23 +118,24 @@ class ToolPatches {
       for (std::uint32_t i = 0; i < n; ++i) {
         if (part[i] != part[next]) continue;
         const double d = static_cast<double>((tool.point(i) - tool.point(next)).norm());
-        if (d < distance[i]) distance[i] = d, of_[i] = patch;
+        if (d < distance[i] * tie) distance[i] = d, of_[i] = patch;
         reach = (std::max)(reach, d);
       }
-      if (is_new_part && (!cuts || reach <= whole_within * a)) {
+      if (is_new_part && (!cuts || reach * tie <= whole_within * a)) {
         for (std::uint32_t i = 0; i < n; ++i)
           if (part[i] == part[next]) distance[i] = 0;
       }
-      next =
-          static_cast<std::uint32_t>(std::max_element(distance.begin(), distance.end()) - distance.begin());
-      if (distance[next] <= a) break;
+      next = 0;
+      for (std::uint32_t i = 1; i < n; ++i)
+        if (distance[i] * tie > distance[next]) next = i;
+      if (distance[next] * tie <= a) break;
     }
     for (std::uint32_t i = 0; i < n; ++i) {  // parts that got no patch of their own
       if (distance[i] != no_patch) continue;
       const auto gap = [&](std::uint32_t seed) { return (tool.point(i) - tool.point(seed)).squaredNorm(); };
       of_[i] = static_cast<std::uint8_t>(
           std::min_element(seeds.begin(), seeds.end(),
-                           [&gap](std::uint32_t l, std::uint32_t r) { return gap(l) < gap(r); }) -
+                           [&gap](std::uint32_t l, std::uint32_t r) { return gap(l) < gap(r) * S(tie); }) -
           seeds.begin());
     }
     of_.resize((n + batch_size - 1) / batch_size * batch_size, of_[n - 1]);

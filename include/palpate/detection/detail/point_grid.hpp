@@ -21,8 +21,14 @@ class PointGrid {
  public:
   static constexpr std::uint32_t none = (std::numeric_limits<std::uint32_t>::max)();
 
-  /// For some or all of the points `all` (at least one), and neighbours strictly nearer than r > 0 [m].
-  PointGrid(std::span<const Vec3<S>> all, S r) : square_(r * r), low_(all[0]) {
+  /// Distances within this factor are equal: what a regular shape has in exact arithmetic, roundings must not
+  /// tell apart, which are others in another unit. In float by less: 64 roundings are 1e-5 of a distance.
+  static constexpr S tie =
+      S(1) - (sizeof(S) == sizeof(float) ? S(64) : S(4096)) * std::numeric_limits<S>::epsilon();
+
+  /// For some or all of the points `all` (at least one), and neighbours strictly nearer than r > 0 [m]; r to
+  /// rounding is not nearer.
+  PointGrid(std::span<const Vec3<S>> all, S r) : square_(r * r * tie), low_(all[0]) {
     Vec3<S> high = low_;
     for (const Vec3<S>& p : all) {
       low_ = low_.cwiseMin(p);
@@ -57,6 +63,16 @@ class PointGrid {
         }
       }
     }
+  }
+
+  /// Calls visit(index) for the nearest point nearer to x than r, and for those as near to rounding.
+  template <class Visit>
+  void for_each_nearest(const Vec3<S>& x, const Visit& visit) const {
+    S min_square = square_;
+    for_each_near(x, [&](std::uint32_t, S d2) { min_square = (std::min)(min_square, d2); });
+    for_each_near(x, [&](std::uint32_t i, S d2) {
+      if (d2 * tie <= min_square) visit(i);
+    });
   }
 
   /// The nearest point nearer to x than r, the first of equal ones; `none` if there is none.

@@ -7,7 +7,8 @@
 
 namespace palpate {
 
-/// Joins the points of a tool that are strictly nearer than r. The tool is rigid, so this is made once.
+/// Joins the points of a tool that are strictly nearer than r; r to rounding is not. The tool is rigid, so
+/// this is made once.
 ///
 /// | symbol | name       | unit | range                                                       |
 /// |--------|------------|------|-------------------------------------------------------------|

@@ -9,6 +9,7 @@
 #include <palpate/law/friction/twist.hpp>
 
 #include <algorithm>
+#include <limits>
 #include <type_traits>
 
 namespace palpate {
@@ -79,7 +80,9 @@ template <FrictionLaw F, ForceLaw L, class Twisting = NoTwist, class Disc = NoTw
   if constexpr (twists)
     turned = detail::turn(twist, anchor.slip, skew, law, X.rotation, anchor.normal, disc, step);
   SlipResult<S> now = Slip::advance(friction, skew, law, step, anchor.slip);
-  S slipped = now.stretch < trial ? (trial - now.stretch) / trial : S(0);
+  // Where the slip rule takes off no more than a rounding, the contact sticks: q must not creep then.
+  constexpr S stuck = S(1) - S(64) * std::numeric_limits<S>::epsilon();
+  S slipped = now.stretch < trial * stuck ? (trial - now.stretch) / trial : S(0);
   if constexpr (twists) {
     if (turned.active) slipped = detail::settle(twist, anchor.slip, skew, law, trial, step, turned, now);
   }

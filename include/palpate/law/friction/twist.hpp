@@ -148,7 +148,6 @@ template <Real S, class Skew, ForceLaw L, class Disc>
 [[nodiscard]] inline TwistTrial<S> turn(Twist<S>& twist, const SlipState<S>& slip, const Skew& skew,
                                         const L& law, const Mat3<S>& rotation, const Vec3<S>& n,
                                         const Disc& disc, SlipTrial<S>& step) noexcept {
-  constexpr S least = S(1e-9);  // [m]: no lever; a contact of less than atoms
   const S angle = twist_angle(twist, rotation, n);
   if (angle == S(0) && twist.angle == S(0)) {
     twist.stiffness = S(0);  // nothing is stored in it
@@ -158,7 +157,8 @@ template <Real S, class Skew, ForceLaw L, class Disc>
   const TwistedDisc<S> region = disc();
   TwistTrial<S> trial;
   trial.lever = friction_lever(region.radius);
-  if (!(trial.lever > least) || !is_finite(region.stiffness)) {
+  // No lever: its square, by which is divided, is none in S.
+  if (!(trial.lever * trial.lever > (std::numeric_limits<S>::min)()) || !is_finite(region.stiffness)) {
     twist.release(rotation);
     return {};
   }
@@ -196,11 +196,12 @@ template <Real S, class Skew, ForceLaw L>
                               SlipResult<S>& result) noexcept {
   const S joint = std::hypot(trial.force, trial.torque / trial.lever), left = result.force.tangential;
   S f = trial.force, t = trial.torque / trial.lever, slipped = S(0);
-  if (result.stretch < step.stretch || left < joint * (S(1) - S(64) * std::numeric_limits<S>::epsilon())) {
+  const bool slips = left < joint * (S(1) - S(64) * std::numeric_limits<S>::epsilon());
+  if (slips || result.stretch < step.stretch) {
     const S across = stuck > S(0) ? trial.force / stuck : S(0);
     const S ratio = across > S(0) ? twist.stiffness / (trial.lever * trial.lever) / across : S(1);
     return_to_disc(left, ratio, f, t);
-    slipped = joint > S(0) ? (std::max)(S(0), S(1) - left / joint) : S(0);
+    slipped = slips ? S(1) - left / joint : S(0);  // a rounding is none
   }
   const S torque = t * trial.lever;
   result.stretch =

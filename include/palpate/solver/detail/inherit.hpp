@@ -145,7 +145,10 @@ void inherit(const Friction& law_of_friction, const Force& force, const Regions&
       // As stiff as it takes to hold the torque with what energy is left.
       const S left = energy - anchor.slip.springs * skew.energy(law, depth, stretch);
       memory[k].twist.release(rotation);
-      if (left > std::numeric_limits<S>::epsilon() * energy && about_normal != S(0)) {
+      // Half of the digits: where the stretch takes all, the difference is rounding, and neither its sign nor
+      // its size must count.
+      constexpr S rounding = S(1) / S(std::uint64_t(1) << std::numeric_limits<S>::digits / 2);
+      if (left > rounding * energy && about_normal != S(0)) {
         memory[k].twist.stiffness = about_normal * (about_normal / (S(2) * left));
         set_twist(memory[k].twist, rotation, anchor.normal, -about_normal / memory[k].twist.stiffness, S(0));
       }
