@@ -353,4 +353,19 @@ class Collector<Regions<N, Sharing>, S, Coupling> {
   PALPATE_NO_UNIQUE_ADDRESS Relief relief_;
 };
 
+template <class T, Real S, class Coupling>
+class Collector<Coarse<T>, S, Coupling> : public Collector<T, S, Coupling> {
+  using Base = Collector<T, S, Coupling>;
+
+ public:
+  using Base::Base;
+
+  template <ContactSurface Object, ForceModel Force, class State, class Sums>
+  Status collect(const Object& object, const CoarseTool<S>& tool, const Force& force, const Pose<S>& X,
+                 State& state, Sums& sums) const noexcept {
+    const Status status = Base::collect(object, tool, force, X, state, sums);
+    return tool.is_coarse() ? status | Status::coarsened : status;
+  }
+};
+
 }  // namespace palpate
