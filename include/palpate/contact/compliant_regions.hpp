@@ -53,6 +53,9 @@ concept ComplianceRatio = std::copyable<C> && requires(const C& compliance, doub
 /// 1, and a patch without force changes nothing: reciprocal, passive, never a pull. A patch within another's
 /// dent that no longer touches gets none (III, phase 3). Derivation and figures: docs/contact.md.
 ///
+/// Of a law with memory U_j is the share in what the region gives back in its state, and the state goes on at
+/// the depth that the region's own force presses to (docs/contact.md).
+///
 /// Patches (detail/tool_patches.hpp) belong to the tool, not to the tick: nothing jumps when regions merge.
 /// What is nearer to each other than the diameter of A_0 on one part of the tool is not coupled: the force
 /// law, which is that of all of A_0, already holds it. Not told apart: which way a patch faces, so that jaws

@@ -17,7 +17,7 @@ enum class ContactMode : std::uint8_t { frictionless, sticking, sliding };
 template <Real S>
 struct ContactState {
   std::uint32_t id;      ///< the same as long as the region lives, through growing, merging and splitting
-  std::uint32_t points;  ///< tool points in it
+  std::uint32_t points;  ///< tool points in it; 0: a dent that a law with memory has kept, without force
   ContactMode mode;
   Vec3<S> centre;        ///< where the force acts on the tool: the pressure centre [m]
   Vec3<S> normal;        ///< outward, unit

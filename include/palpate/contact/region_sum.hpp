@@ -108,8 +108,8 @@ struct RegionSum {
 };
 
 /// A RegionSum that also has what laws with memory ask for, w_i = m_i/m being the points' weights.
-template <Real S>
-struct EnergySum : RegionSum<S> {
+template <Real S, class Base = RegionSum<S>>
+struct EnergySum : Base {
   S energy = S(0);  ///< sum of w_i W(delta_i) [J]
   S square = S(0);  ///< sum of w_i law(delta_i)^2 [N^2]
 
@@ -126,17 +126,17 @@ struct EnergySum : RegionSum<S> {
   }
 };
 
-/// The RegionSum of a tool that is one point, set by one add(): the same to rounding, without roots and
-/// divisions.
+/// The RegionSum of a tool that is one point, undefined until one add() sets it: the same to rounding,
+/// without roots and divisions.
 template <Real S>
 class PointForce {
  public:
-  Vec3<S> force = Vec3<S>::Zero();     ///< on the tool [N]
-  Vec3<S> torque = Vec3<S>::Zero();    ///< about the tool's centre of mass [N m]
-  Vec3<S> exit = Vec3<S>::UnitY();     ///< exit direction, unit
-  Vec3<S> position = Vec3<S>::Zero();  ///< [m]
-  S deepest = S(0);                    ///< delta [m]
-  std::uint32_t points = 0;
+  Vec3<S> force;     ///< on the tool [N]
+  Vec3<S> torque;    ///< about the tool's centre of mass [N m]
+  Vec3<S> exit;      ///< exit direction, unit
+  Vec3<S> position;  ///< [m]
+  S deepest;         ///< delta [m]
+  std::uint32_t points;
 
   /// As RegionSum's; the area is not used.
   void add(const Vec3<S>& x, const Vec3<S>& arm, const Vec3<S>& gradient, S depth, S f,
@@ -171,7 +171,7 @@ class PointForce {
   [[nodiscard]] Vec3<S> normal() const noexcept { return exit; }
 
  private:
-  S normal_force_ = S(0);
+  S normal_force_;
 };
 
 namespace detail {

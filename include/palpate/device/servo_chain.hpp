@@ -190,7 +190,7 @@ class ServoChain {
     S arm = S(0);
     if constexpr (detail::HasContacts<Solver, Result>) {
       for (const ContactState<S>& c : contacts(out.result))
-        arm = (std::max)(arm, (c.centre - out.tool.translation).norm());
+        if (c.points > 0) arm = (std::max)(arm, (c.centre - out.tool.translation).norm());
     }
     const S moved = (out.tool.translation - last_.translation).norm() +
                     arm * (out.tool.rotation - last_.rotation).norm() +

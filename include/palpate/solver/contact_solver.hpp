@@ -223,8 +223,7 @@ class ContactSolver {
 
  private:
   using Sum = typename Collector<Contacts, S, Coupling>::template Sum<Force>;
-  using Sums = std::array<Sum, max_regions>;
-  static constexpr bool is_relieved = std::same_as<Sum, detail::RelievedSum<S>>;
+  static constexpr bool is_relieved = std::derived_from<Sum, detail::RelievedSum<S>>;
 
   TickResult<S> step(const Pose<S>& X, [[maybe_unused]] S dt, Status status, State& state) const noexcept {
     // The second tick at a pose settles what the motion into it left (slip, rate); after that nothing
@@ -236,6 +235,7 @@ class ContactSolver {
     if (settled) return {last.result.wrench, last.result.status | status};
     if (!is_usable(X)) {
       state.forget_contact();
+      if constexpr (has_memory) detail::add_dents(force_, state.regions_, state.law_, state.contacts_);
       return {{}, status | Status::invalid_pose};
     }
     TickResult<S> result;
@@ -243,6 +243,7 @@ class ContactSolver {
       result = in_contact(X, dt, state);  // a call would be 3 % of its instructions
     else
       result = contact_at(X, dt, state);
+    if constexpr (has_memory) detail::add_dents(force_, state.regions_, state.law_, state.contacts_);
     if (!is_finite(result.wrench.force) || !is_finite(result.wrench.torque)) {
       state.reset();
       return {{}, result.status | status | Status::non_finite_result};
@@ -256,10 +257,16 @@ class ContactSolver {
   TickResult<S> in_contact(const Pose<S>& X, [[maybe_unused]] S dt, State& state) const noexcept {
     state.contacts_.clear();
     if constexpr (is_rate_dependent) state.poses_.push(X, dt);
-    Sums sums;
-    TickResult<S> result{{}, collector_.collect(object_, tool_, force_, X, state.regions_, sums)};
-    if constexpr (has_memory) detail::advance(force_, state.regions_, dt, sums, state.law_);
+    detail::TickSums<Sum, max_regions> found;
+    TickResult<S> result;
+    if constexpr (has_memory) {
+      result.status = detail::collect_and_remember(collector_, object_, tool_, force_, X, dt, state.regions_,
+                                                   state.law_, found);
+    } else {
+      result.status = collector_.collect(object_, tool_, force_, X, state.regions_, found);
+    }
     if (!has(result.status, Status::contact)) return result;
+    auto& sums = found.list();
     if constexpr (has_friction && ClusteredTopology<Contacts>) {
       if (state.regions_.changed())
         detail::inherit(friction_, force_, state.regions_, sums, X, state.last_.pose.rotation, state.memory_);
@@ -325,7 +332,10 @@ class ContactSolver {
     wrench.force += contact.force;
     if constexpr (std::same_as<Acting, AtContact>) wrench.torque += sum.torque;
     if constexpr (is_relieved) {
-      if (!(sum.magnitude > S(0)) && sum.full > S(0)) return;  // within another's dent: it does not touch
+      if (!(sum.magnitude > S(0)) && sum.full > S(0)) {  // within another's dent: it does not touch
+        if constexpr (has_memory) detail::add_dent(force_, state.law_[k], state.contacts_);
+        return;
+      }
     }
     state.contacts_.push_back(contact);
   }

@@ -27,6 +27,7 @@ template <class Solver>
   const Vec3<S> centre = X * solver.centre_of_mass();
   S depth = S(0), arm = S(0);
   for (const auto& contact : state.contacts()) {
+    if (contact.points == 0) continue;
     depth = (std::max)(depth, contact.displacement.norm());
     arm = (std::max)(arm, (contact.centre - centre).norm());
   }

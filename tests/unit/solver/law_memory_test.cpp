@@ -1,15 +1,21 @@
 // SPDX-License-Identifier: MIT
 // Force laws with memory in the solver: states of regions, kept where a contact ended, carried over mergers.
 #include <palpate/geometry/box.hpp>
+#include <palpate/geometry/ellipsoid.hpp>
+#include <palpate/geometry/extremal_points.hpp>
 #include <palpate/geometry/triangle_mesh.hpp>
 #include <palpate/law/force/linear.hpp>
 #include <palpate/law/force/plastic.hpp>
 #include <palpate/law/force/relaxing.hpp>
+#include <palpate/luo_xiao/beam_skeleton.hpp>
+#include <palpate/luo_xiao/interpolation/phong.hpp>
 #include <palpate/solver/contact_solver.hpp>
 
 #include <support/check.hpp>
 
+#include <algorithm>
 #include <random>
+#include <vector>
 
 using namespace palpate;
 using V = Vec3<double>;
@@ -53,7 +59,11 @@ TEST_CASE("a dent stays: met again where it is, not elsewhere, and not after res
   const auto press = [&](double x, double depth) { return solver.tick(at(x, depth), 1e-3).wrench.force.y(); };
   CHECK_RELATIVE(press(0, 7e-3), 3.0, 1e-12);  // 2 N + 200 N/m 5 mm: 4 mm stay
   CHECK(press(0, -1e-3) == 0);
-  CHECK(solver.contacts().empty());
+  REQUIRE(solver.contacts().size() == 1);  // the dent, in which nothing touches
+  CHECK(solver.contacts()[0].points == 0);
+  CHECK(solver.contacts()[0].force.norm() == 0);
+  CHECK_RELATIVE(-solver.contacts()[0].displacement.y(), 4e-3, 1e-12);
+  CHECK((solver.contacts()[0].origin() - V(0, 0.02, 0)).norm() < 1e-12);
   CHECK(press(1e-3, 3e-3) == 0);  // above the bottom of the dent
   REQUIRE(solver.contacts().size() == 1);
   CHECK_RELATIVE(-solver.contacts()[0].displacement.y(), 4e-3,
@@ -67,6 +77,50 @@ TEST_CASE("a dent stays: met again where it is, not elsewhere, and not after res
   CHECK_RELATIVE(press(0.02, 1.5e-3), 1.5, 1e-12);
   solver.reset();
   CHECK_RELATIVE(press(0, 1.5e-3), 1.5, 1e-12);
+}
+
+TEST_CASE("a dent that stays is drawn when the tool has left; without memory the shape is at rest again") {
+  const Ellipsoid<double> egg({.axes = {0.03, 0.02, 0.02}});
+  const MeshData<double> mesh = egg.mesh(400);
+  std::vector<V> ends;
+  for (const auto& point : extremal_points(egg)) ends.push_back(point.position);
+  using Beams = RegionSkeletons<Skeleton<double>>;
+  using Shape = BeamSkeletonDeformation<Beams, PhongInterpolation<double>>;
+  const Shape shape(
+      Beams(Skeleton<double>(ends, EulerBernoulli<double>(IsotropicElasticity<double>({.E = 1e5, .nu = 0.5})),
+                             VolumePreserving<double>({.volume = egg.volume()}))),
+      PhongInterpolation<double>(make_partition(egg, mesh)), AreaNeighbourhood<double>({}), mesh,
+      {.fixed = V(0, -0.02, 0)});
+  const auto top =
+      static_cast<std::size_t>(std::max_element(mesh.vertices.begin(), mesh.vertices.end(),
+                                                [](const V& a, const V& b) { return a.y() < b.y(); }) -
+                               mesh.vertices.begin());
+  std::vector<double> positions(3 * mesh.vertices.size());
+  const VertexBuffer<double> out{.positions = positions.data()};
+  /// How far the vertex under the tool stays down, and whether all others are where they were at rest.
+  const auto left_down = [&](auto solver, double& down, bool& at_rest) {
+    solver.draw_rest(out);
+    const std::vector<double> rest = positions;
+    for (const double depth : {-1e-3, 4e-3, 7e-3, -1e-3, -2e-3}) {
+      (void)solver.tick(at(0, depth), 1e-3);
+      (void)solver.draw(solver.contacts(), out);
+    }
+    down = rest[3 * top + 1] - positions[3 * top + 1];
+    at_rest = positions == rest;
+    solver.reset();
+    (void)solver.draw(solver.contacts(), out);
+    CHECK(positions == rest);
+  };
+  double down = 0;
+  bool at_rest = true;
+  left_down(make_solver(egg, PointTool<double>{}, putty, Frictionless<double>{}, SinglePoint{}, shape), down,
+            at_rest);
+  CHECK_RELATIVE(down, 4e-3, 1e-5);  // the mesh's vertex is at the axis' end to 1e-9 m
+  CHECK_FALSE(at_rest);
+  left_down(make_solver(egg, PointTool<double>{}, spring, Frictionless<double>{}, SinglePoint{}, shape), down,
+            at_rest);
+  CHECK(down == 0);
+  CHECK(at_rest);
 }
 
 TEST_CASE("held still, the force relaxes: a law with memory has no tick that repeats the last one") {

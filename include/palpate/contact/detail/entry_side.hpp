@@ -24,6 +24,9 @@ namespace palpate::detail {
 ///   cannot give back more than the way in has stored. From there on the region has no force until the tool
 ///   has left the object.
 ///
+/// Above a depth at which no tool is past the middle nothing is remembered: most contacts pay for nothing.
+/// Who comes from there to beyond the middle in one tick came from the other side, as below.
+///
 /// A tool whose first tick of contact is beyond the middle came from the other side, as far as can be known:
 /// SweptPose is for that.
 template <Real S>
@@ -35,9 +38,14 @@ class EntrySide {
     depth_ = S(0);
   }
 
-  /// Looks at this tick's sum, and changes it where the region is lost.
+  /// Looks at this tick's sum, and changes it where the region is lost. Above the depth `shallow` [m] there
+  /// is nothing to remember.
   template <class Sum>
-  Status update(const Pose<S>& X, Sum& sum) noexcept {
+  Status update(const Pose<S>& X, S shallow, Sum& sum) noexcept {
+    if (!seen_ && sum.deepest < shallow) {
+      depth_ = S(0);
+      return Status::ok;
+    }
     if (lost_) [[unlikely]]
       return fade(X, sum);
     const S along = exit_.dot(sum.exit);

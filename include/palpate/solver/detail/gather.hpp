@@ -6,7 +6,8 @@
 ///
 ///     Sum<Force>                                           what adds up a region
 ///     State, initial_state()                               from tick to tick: slot(k), changed(), reset()
-///     Status collect(object, tool, force, X, state, sums)  finds what touches and adds it up, a sum per slot
+///     Status collect(object, tool, force, X, state, sums)  finds what touches and adds it up, by slot; else
+///                                                          there are no sums
 
 #include <palpate/contact/detail/entry_side.hpp>
 #include <palpate/contact/detail/region_tracker.hpp>
@@ -20,9 +21,11 @@
 #include <palpate/law/map/concept.hpp>
 #include <palpate/solver/detail/leaf_share.hpp>
 #include <palpate/solver/detail/relief.hpp>
+#include <palpate/solver/detail/tick_sums.hpp>
 
 #include <algorithm>
 #include <array>
+#include <concepts>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
@@ -41,15 +44,24 @@ template <ContactSurface Object, ForceModel Force>
   return status;
 }
 
+/// Depth [m] above which nothing can be past the middle of the body (EntrySide). Exact surfaces know their
+/// reach; that of a mesh is an estimate, and a part of it may be thinner.
+template <ContactSurface Object>
+[[nodiscard]] inline typename Object::Scalar shallow(const Object& object) noexcept {
+  using S = typename Object::Scalar;
+  if constexpr (ParametricSurface<Object>) return object.reach() / S(4);
+  return S(0);
+}
+
 /// The state of a topology with one region.
 template <Real S>
 class OneRegion : public SingleSlot {
  public:
   /// After update() in contact.
   template <class Sum>
-  Status keep_side(const Pose<S>& X, Sum& sum) noexcept {
+  Status keep_side(const Pose<S>& X, S shallow, Sum& sum) noexcept {
     if (this->slot(0).merged == 0) side_.begin();
-    return side_.update(X, sum);
+    return side_.update(X, shallow, sum);
   }
 
  private:
@@ -133,11 +145,11 @@ inline void for_each_touching_leaf(const ToolPoints<S>& tool, const Pose<S>& X, 
 
 /// What adds up a region of many points. A law with memory asks for the region's energy too.
 template <class Force, Real S, class Without>
-using SumFor = std::conditional_t<StatefulForceLaw<Force>, EnergySum<S>, Without>;
+using SumFor = std::conditional_t<StatefulForceLaw<Force>, EnergySum<S, Without>, Without>;
 
-template <class Leaves, StatefulForceLaw Law, Real S>
+template <class Leaves, StatefulForceLaw Law, Real S, class Base>
 inline void add_energy(const Leaves& leaves, const ToolPoints<S>& tool, std::uint32_t begin, const Law& law,
-                       const Pose<S>& X, const PenetrationBatch<S>& in, EnergySum<S>& sum) noexcept {
+                       const Pose<S>& X, const PenetrationBatch<S>& in, EnergySum<S, Base>& sum) noexcept {
   std::array<S, batch_size> energy, f;
   leaves.alone(tool, begin, law, X, in, energy, f);
   for (std::size_t i = 0; i < batch_size; ++i) {
@@ -165,7 +177,7 @@ class Collector<SinglePoint, S, Coupling> {
 
   template <ContactSurface Object, ForceModel Force>
   Status collect(const Object& object, const PointTool<S>& tool, const Force& force, const Pose<S>& X,
-                 State& state, std::array<Sum<Force>, 1>& sums) const noexcept {
+                 State& state, detail::TickSums<Sum<Force>, 1>& sums) const noexcept {
     const Vec3<S> x = X * tool.tip;
     const Penetration<S> in = object.penetration(x);
     const bool touching = in.depth > S(0);
@@ -173,9 +185,11 @@ class Collector<SinglePoint, S, Coupling> {
     if (!touching) return Status::ok;
     const auto& law = detail::law_at(force, x);
     const Vec3<S> arm = X.rotation * (tool.tip - tool.centre_of_mass);
-    sums[0].add(x, arm, in.gradient, in.depth, law.force(in.depth), S(0));
-    if constexpr (ForceMap<Force>) sums[0].add(arm, law.configurational_force(in.depth));
-    return Status::contact | detail::depth_status(object, force, in.depth) | state.keep_side(X, sums[0]);
+    Sum<Force>& sum = detail::begin<Force>(sums)[0];
+    sum.add(x, arm, in.gradient, in.depth, law.force(in.depth), S(0));
+    if constexpr (ForceMap<Force>) sum.add(arm, law.configurational_force(in.depth));
+    return Status::contact | detail::depth_status(object, force, in.depth) |
+           state.keep_side(X, detail::shallow(object), sum);
   }
 };
 
@@ -191,22 +205,24 @@ class Collector<SingleRegion<Sharing>, S, Coupling> {
   [[nodiscard]] State initial_state() const noexcept { return {}; }
 
   template <ContactSurface Object, ForceModel Force>
-  Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
-                 State& state, std::array<Sum<Force>, 1>& sums) const noexcept {
+  PALPATE_INLINE Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force,
+                                const Pose<S>& X, State& state,
+                                detail::TickSums<Sum<Force>, 1>& sums) const noexcept {
     auto leaves = leaves_.begin(tool, X);
     detail::for_each_touching_leaf(
         tool, X, object,
         [&](std::uint32_t begin, const PointBatch<S>& x, const PenetrationBatch<S>& in) noexcept {
           leaves_.add(tool, begin, force, x, in, leaves);
           if constexpr (StatefulForceLaw<Force>)
-            detail::add_energy(leaves_, tool, begin, force, X, in, sums[0]);
+            detail::add_energy(leaves_, tool, begin, force, X, in, sums.list()[0]);
         });
     state.update(!leaves.empty());
     if (leaves.empty()) return Status::ok;
-    Sum<Force>& sum = sums[0];
+    Sum<Force>& sum = detail::begin<Force>(sums)[0];
     static_cast<RegionSum<S>&>(sum) = leaves.total();
     sum.scale(Sharing::norm(static_cast<S>(sum.points)));
-    return Status::contact | detail::depth_status(object, force, sum.deepest) | state.keep_side(X, sum);
+    return Status::contact | detail::depth_status(object, force, sum.deepest) |
+           state.keep_side(X, detail::shallow(object), sum);
   }
 
  private:
@@ -268,7 +284,7 @@ class Collector<Regions<N, Sharing>, S, Coupling> {
       }
     }
 
-    Status keep_side(std::size_t k, const Pose<S>& X, RegionSum<S>& sum) noexcept {
+    Status keep_side(std::size_t k, const Pose<S>& X, S shallow, RegionSum<S>& sum) noexcept {
       const RegionSlot& slot = tracker_.slots()[k];
       if (slot.merged == 0) {
         if (slot.parent == RegionSlot::none)
@@ -276,7 +292,7 @@ class Collector<Regions<N, Sharing>, S, Coupling> {
         else
           side_[k] = side_[slot.parent];  // split off
       }
-      return side_[k].update(X, sum);
+      return side_[k].update(X, shallow, sum);
     }
 
     RegionTracker<S, N> tracker_;
@@ -287,13 +303,10 @@ class Collector<Regions<N, Sharing>, S, Coupling> {
   };
   [[nodiscard]] State initial_state() const { return State(points_, leaves_.size()); }
 
-  template <ContactSurface Object, ForceModel Force>
+  /// `memory`: a LawTick, where a law with memory meets a relief.
+  template <ContactSurface Object, ForceModel Force, class... Memory>
   Status collect(const Object& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
-                 State& state, std::array<Sum<Force>, N>& sums) const noexcept {
-    static_assert(
-        !(Relief::active && StatefulForceLaw<Force>),
-        "CompliantRegions share the force of laws without memory: a law with memory needs another coupling, "
-        "such as IndependentRegions");
+                 State& state, detail::TickSums<Sum<Force>, N>& all, const Memory&... memory) const noexcept {
     std::size_t leaves = 0, count = 0;
     S deepest = S(0);
     detail::for_each_touching_leaf(
@@ -313,35 +326,48 @@ class Collector<Regions<N, Sharing>, S, Coupling> {
     Status status = state.tracker_.update(graph_, {state.point_.data(), count},
                                           Positions{&tool, &X, state.point_.data()});
     if (count == 0) return Status::ok;
+    auto& sums = detail::begin<Force>(all);
+    const S shallow = detail::shallow(object);
     if (state.tracker_.changed()) state.find_slots(leaves, count);
-    const auto relief =
-        relief_.relieve(tool, force, X, std::span<const Leaf>(state.leaf_.data(), leaves), leaves_);
-    for (std::size_t slot = 0; slot < N; ++slot) {
+    const std::span<const Leaf> touching(state.leaf_.data(), leaves);
+    const auto add_energy = [&]([[maybe_unused]] std::size_t slot, [[maybe_unused]] std::uint32_t begin,
+                                [[maybe_unused]] const PenetrationBatch<S>& in, const auto& relief) noexcept {
+      if constexpr (StatefulForceLaw<Force>) {  // of the regions without each other
+        if constexpr (std::same_as<std::remove_cvref_t<decltype(relief)>, detail::AllLeft>)
+          detail::add_energy(leaves_, tool, begin, force, X, in, sums[slot]);
+      }
+    };
+    const auto add_up = [&](std::size_t slot, const auto& relief) noexcept {
       const std::uint64_t bit = std::uint64_t(1) << slot;
-      if ((state.met_ & bit) == 0) continue;
       auto sum = leaves_.begin(tool, X);
-      for (std::size_t k = 0; k < leaves; ++k) {
-        const Leaf& leaf = state.leaf_[k];
+      for (const Leaf& leaf : touching) {
         if ((leaf.slots & bit) == 0) continue;
         // Placed anew: less work than to keep them, once other programs' data have taken the caches.
         const PointBatch<S>& x = leaves_.placed(tool, leaf.begin, X);
         if (leaf.slots == bit) {
-          leaves_.add(tool, leaf.begin, force, x, leaf.in, sum, relief_.left(relief, leaf.begin));
-          if constexpr (StatefulForceLaw<Force>)
-            detail::add_energy(leaves_, tool, leaf.begin, force, X, leaf.in, sums[slot]);
+          leaves_.add(tool, leaf.begin, force, x, leaf.in, sum, relief_.left(relief, leaf.begin, slot));
+          add_energy(slot, leaf.begin, leaf.in, relief);
           continue;
         }
         PenetrationBatch<S> own = leaf.in;
         for (std::uint32_t i = 0; i < leaf_size; ++i)
           own.depth[i] = leaf.slot[i] == slot ? own.depth[i] : S(0);
-        leaves_.add(tool, leaf.begin, force, x, own, sum, relief_.left(relief, leaf.begin));
-        if constexpr (StatefulForceLaw<Force>)
-          detail::add_energy(leaves_, tool, leaf.begin, force, X, own, sums[slot]);
+        leaves_.add(tool, leaf.begin, force, x, own, sum, relief_.left(relief, leaf.begin, slot));
+        add_energy(slot, leaf.begin, own, relief);
       }
       static_cast<RegionSum<S>&>(sums[slot]) = sum.total();
       sums[slot].scale(Sharing::norm(static_cast<S>(sums[slot].points)));
+    };
+    if constexpr (sizeof...(Memory) > 0) {  // what is remembered goes by the regions without each other
+      for (std::size_t slot = 0; slot < N; ++slot)
+        if ((state.met_ >> slot & 1u) != 0) add_up(slot, detail::AllLeft{});
+    }
+    const auto relief = relief_.relieve(tool, force, X, touching, leaves_, state, sums, memory...);
+    for (std::size_t slot = 0; slot < N; ++slot) {
+      if ((state.met_ >> slot & 1u) == 0) continue;
+      add_up(slot, relief);
       if constexpr (Relief::active) sums[slot].full = relief.full[slot];
-      status |= state.keep_side(slot, X, sums[slot]);
+      status |= state.keep_side(slot, X, shallow, sums[slot]);
     }
     return status | Status::contact | detail::depth_status(object, force, deepest);
   }

@@ -4,6 +4,7 @@
 /// @file What a force law with memory remembers of each region: advanced every tick, carried over when
 /// regions merge or split, met again where a contact ended.
 
+#include <palpate/contact/contact_state.hpp>
 #include <palpate/contact/region_slot.hpp>
 #include <palpate/contact/region_sum.hpp>
 #include <palpate/core/fixed_vector.hpp>
@@ -25,8 +26,37 @@ struct LawMemory {
   typename Law::Scalar weight{};  ///< w, the greatest so far [-]
   typename Law::Scalar force{};   ///< of the law without memory in the last tick [N]
   typename Law::Scalar depth{};   ///< D of the last tick [m]
-  Vec3<typename Law::Scalar> place = Vec3<typename Law::Scalar>::Zero();  ///< on the undeformed surface [m]
-  bool kept = false;                                                      ///< there is something to remember
+  Vec3<typename Law::Scalar> place = Vec3<typename Law::Scalar>::Zero();   ///< on the undeformed surface [m]
+  Vec3<typename Law::Scalar> normal = Vec3<typename Law::Scalar>::Zero();  ///< outward, unit
+  typename Law::Scalar area{};  ///< that carried the force, the greatest so far [m^2]
+  std::uint32_t id = 0;         ///< of the region
+  bool kept = false;            ///< there is something to remember
+};
+
+/// What stays where a region was: a contact without points and force whose displacement is the depth at which
+/// the law gives no force in this state; nothing below the rounding of its place, which what relaxes reaches.
+template <StatefulForceLaw Law, class Contacts>
+void add_dent(const Law& law, const LawMemory<Law>& m, Contacts& contacts) noexcept {
+  using S = typename Law::Scalar;
+  const S depth = m.kept ? law.depth(S(0), m.state) : S(0);
+  if (!(depth > std::numeric_limits<S>::epsilon() * m.place.norm())) return;
+  const Vec3<S> D = -depth * m.normal, zero = Vec3<S>::Zero();
+  contacts.push_back(
+      {m.id, 0, ContactMode::frictionless, m.place + D, m.normal, D, zero, zero, S(0), m.area, depth});
+}
+/// All of those in which nothing touches.
+template <StatefulForceLaw Law, class Regions, std::size_t N, class Contacts>
+void add_dents(const Law& law, const Regions& regions, const std::array<LawMemory<Law>, N>& memory,
+               Contacts& contacts) noexcept {
+  for (std::size_t k = 0; k < N; ++k)
+    if (!regions.slot(k).active) add_dent(law, memory[k], contacts);
+}
+
+/// A tick of laws with memory, dt [s] long.
+template <class Memory, Real S>
+struct LawTick {
+  Memory& memory;
+  S dt;
 };
 
 /// The region's depth D [m] for the law: that of a flat one of its weight w with the same energy, w W(D) = E
@@ -35,8 +65,8 @@ struct LawMemory {
 /// potential once the tool tilts. The weight only grows while the region lives, which takes energy: the set
 /// reaches more of the body. Newton's method from above, where it converges steadily, W being convex; 30
 /// steps bring any ratio of start and root below 2^30 home.
-template <StatefulForceLaw Law, Real S>
-[[nodiscard]] S depth_of(const Law& law, const EnergySum<S>& sum, S weight) noexcept {
+template <StatefulForceLaw Law, Real S, class Base>
+[[nodiscard]] S depth_of(const Law& law, const EnergySum<S, Base>& sum, S weight) noexcept {
   S depth = sum.deepest;
   const S energy = sum.energy / weight;
   if (!(energy > S(0)) || !is_finite(energy)) return depth;
@@ -53,8 +83,8 @@ template <StatefulForceLaw Law, Real S>
 [[nodiscard]] S depth_of(const Law&, const PointForce<S>& sum, S /*weight*/) noexcept {
   return sum.deepest;
 }
-template <Real S>
-[[nodiscard]] S weight_of(const EnergySum<S>& sum) noexcept {
+template <Real S, class Base>
+[[nodiscard]] S weight_of(const EnergySum<S, Base>& sum) noexcept {
   return sum.weight();
 }
 template <Real S>
@@ -160,10 +190,11 @@ void carry(const Law& law, const Regions& regions, const std::array<Sum, N>& sum
   }
 }
 
-/// One tick of all that is remembered; scales each region's forces to what the law gives in its state.
+/// What a tick begins with: states carried over mergers and splits, or met where a contact ended; where
+/// nothing touches they go on by themselves.
 template <StatefulForceLaw Law, class Regions, class Sum, Real S, std::size_t N>
-void advance(const Law& law, const Regions& regions, S dt, std::array<Sum, N>& sums,
-             std::array<LawMemory<Law>, N>& memory) noexcept {
+void remember(const Law& law, const Regions& regions, S dt, const std::array<Sum, N>& sums,
+              std::array<LawMemory<Law>, N>& memory) noexcept {
   if constexpr (N > 1) {
     if (regions.changed()) carry(law, regions, sums, memory);
   }
@@ -174,14 +205,37 @@ void advance(const Law& law, const Regions& regions, S dt, std::array<Sum, N>& s
   }
   for (std::size_t k = 0; k < N; ++k) {
     LawMemory<Law>& m = memory[k];
-    if (!regions.slot(k).active) {
-      if (m.kept) m.state = law.advance(m.state, S(0), dt);
-      continue;
-    }
+    if (!regions.slot(k).active && m.kept) m.state = law.advance(m.state, S(0), dt);
+  }
+}
+
+/// A tick of region `id`, which touches: its depth is D, and the state that of a region pressed to `felt`
+/// [m].
+template <StatefulForceLaw Law, class Sum, Real S>
+[[nodiscard]] LawMemory<Law> advanced(const Law& law, const LawMemory<Law>& m, std::uint32_t id,
+                                      const Sum& sum, S weight, S depth, S felt, S dt) noexcept {
+  return {.state = law.advance(m.state, felt, dt),
+          .weight = weight,
+          .force = sum.normal_force(),
+          .depth = depth,
+          .place = origin_of(sum, sum.deepest),
+          .normal = sum.normal(),
+          .area = (std::max)(m.area, sum.area()),
+          .id = id,
+          .kept = true};
+}
+
+/// One tick of all that is remembered; scales each region's forces to what the law gives in its state.
+template <StatefulForceLaw Law, class Regions, class Sum, Real S, std::size_t N>
+void advance(const Law& law, const Regions& regions, S dt, std::array<Sum, N>& sums,
+             std::array<LawMemory<Law>, N>& memory) noexcept {
+  remember(law, regions, dt, sums, memory);
+  for (std::size_t k = 0; k < N; ++k) {
+    if (!regions.slot(k).active) continue;
+    LawMemory<Law>& m = memory[k];
     const S weight = (std::max)(m.weight, weight_of(sums[k]));
     const S depth = depth_of(law, sums[k], weight), fresh = law.force(depth);
-    m = {law.advance(m.state, depth, dt),     weight, sums[k].normal_force(), depth,
-         origin_of(sums[k], sums[k].deepest), true};
+    m = advanced(law, m, regions.slot(k).id, sums[k], weight, depth, depth, dt);
     if (fresh > S(0)) sums[k].scale(law.force(depth, m.state) / fresh);
   }
 }
