@@ -137,3 +137,19 @@ TEST_CASE("complementarity: a matrix that is not definite or not finite is refus
   CHECK(solved(M, Vector{{1, 1}}, ok).minCoeff() >= 0);
   CHECK(!ok);
 }
+
+TEST_CASE(
+    "complementarity: a row that is held is 0 whatever stood there, and small right sides are as good as "
+    "large") {
+  Matrix M(2, 2);
+  M << 1, 0.9, 0.9, 1;  // the second row is within the first one's dent
+  for (const double size : {1e-30, 1e-7, 1.0, 1e20}) {
+    std::array<double, 2> x{7, 7};
+    CHECK(solve_complementarity(M, std::array<double, 2>{size, 0.5 * size}, 2, x));
+    CHECK_RELATIVE(x[0], size, 1e-15);
+    CHECK(x[1] == 0);
+    x = {7, 7};
+    CHECK(solve_complementarity(M, std::array<double, 2>{size, -size}, 2, x));
+    CHECK(x[1] == 0);
+  }
+}

@@ -152,3 +152,20 @@ TEST_CASE("tabulated: bad data is refused with its place and value") {
         std::string::npos);
 }
 #endif
+
+TEST_CASE(
+    "tabulated: slopes at the ends are the secants continued, at most two of them; energy is the integral") {
+  // Secants 2 N/m over 1 m, then 1 over 2 m, then 4 over 1 m.
+  const std::vector<Table<double>::Sample> samples{{0, 0}, {1, 2}, {3, 4}, {4, 8}};
+  const Table<double> law(samples);
+  CHECK_RELATIVE(law.stiffness(1e-12), 2 * std::cbrt(2.0), 1e-9);                  // 2 (2/1)^(1/3)
+  CHECK_RELATIVE(law.force(5), 8 + 4 * std::pow(4.0, 1.0 / 3), ulps<double>(16));  // 4 (4/1)^(1/3) = 6.35
+  const std::vector<Table<double>::Sample> steep{{0, 0}, {1, 0.01}, {2, 1.01}};
+  CHECK_RELATIVE(Table<double>(steep).force(3), 1.01 + 2, ulps<double>(16));  // (100)^(1/2) is more than 2
+  double sum = 0;
+  for (const double at : {0.0, 1.0, 2.0, 3.0, 3.5}) {  // Simpson's rule is exact for a piece's cubic
+    const double end = at < 3 ? at + 1 : at == 3.0 ? 3.5 : 4;
+    sum += (end - at) / 6 * (law.force(at) + 4 * law.force(0.5 * (at + end)) + law.force(end));
+    CHECK_RELATIVE(law.energy(end), sum, ulps<double>(32));
+  }
+}

@@ -117,3 +117,10 @@ TEST_CASE("friction laws: bad parameters are refused by name and value") {
   CHECK_THROWS_AS(static_cast<void>(Power::si_coefficient(10, 0.75, 0)), SetupError);
 }
 #endif
+
+TEST_CASE("power law friction: where the limits meet below F_0 sliding is not above sticking either") {
+  // (K/mu_D)^4 = 1.6 mN, F_0 = 10 mN: on the chord 0.1 F_0^(-1/4) = 0.316 is below mu_D everywhere.
+  const PowerLawFriction<double> friction({.K = 0.1, .beta = 0.75, .mu_dynamic = 0.5, .linear_below = 0.01});
+  for (const double F : {1e-9, 1e-3, 1.5e-3, 5e-3, 0.1})
+    CHECK(friction.sliding_limit(F) == friction.static_limit(F));
+}

@@ -102,6 +102,14 @@ TEST_CASE("return mapping: springs of merged regions push together, and a slip l
   CHECK_RELATIVE(law.force(at), 0.3, 1e-6);
 }
 
+TEST_CASE("return mapping: strength that regions left is over the static limit after a stop") {
+  const double stretch = law.depth(0.3);
+  SlipState<double> state{true, 3.0, stretch};  // slides at three times its limit, 0.9 N
+  (void)push<ReturnMapping, ByComponents>(state, 0.5 * stretch, stretch, 0);
+  CHECK_FALSE(state.sliding);
+  CHECK_RELATIVE(state.strength, 1.5, test::ulps<double>(16));  // the same 0.9 N over 0.6 N
+}
+
 TEST_CASE("literal shift: as printed, D_t keeps its last value and friction drops at once") {
   SlipState<double> state;
   const double before = law.depth(0.59), trial = law.depth(0.61);
