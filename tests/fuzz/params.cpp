@@ -206,8 +206,8 @@ void one(std::uint8_t kind, Bytes& in) {
     }
     case 15: {
       typename Gate<S>::Params p;
-      for (S* x : {&p.max_force, &p.continuous_force, &p.heat_time, &p.max_torque, &p.max_force_rate,
-                   &p.max_torque_rate, &p.arm_after, &p.ramp_time, &p.max_gap, &p.max_speed})
+      for (S* x : {&p.max_force, &p.continuous_force, &p.heat_time, &p.max_torque, &p.arm_after, &p.ramp_time,
+                   &p.max_gap, &p.max_speed})
         if (in.byte() % 2) *x = n();
       Gate<S> gate(p);
       for (int k = 0; k < 64 && !in.empty(); ++k) {
