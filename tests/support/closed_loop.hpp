@@ -85,12 +85,17 @@ class ClosedLoop {
   V w = V::Zero();                            ///< its spin [rad/s]
   double t = 0;                               ///< [s]
   Wrench<double> acting;                      ///< of the motors, about the tip, in the last tick
-  double to_hand = 0, most_to_hand = 0;       ///< given to the hand; the most it ever had
-  double from_motors = 0, lost_to_friction = 0;
+  double to_hand = 0, from_motors = 0, lost_to_friction = 0;
 
   [[nodiscard]] double kinetic() const {
     return device_.mass * v.squaredNorm() / 2 + device_.inertia * w.squaredNorm() / 2;
   }
+  /// The most by which the motors, since they last rested, gave more than they had taken and friction lost: what
+  /// hand and arm have gained from a touch, at any time in it. Nothing in a passive loop.
+  [[nodiscard]] double most_made() const { return most_made_; }
+  /// What positions that are read half an encoder step wrong can hide of that from one who counts work by them:
+  /// half a step times all changes of the force in a touch, summed over axes; the most of any touch.
+  [[nodiscard]] double most_quantised() const { return most_quantised_; }
   [[nodiscard]] const LoopDevice& device() const { return device_; }
 
   /// What the encoders say.
@@ -112,6 +117,14 @@ class ClosedLoop {
       since_ = 0;
     }
     acting = commands_[static_cast<std::size_t>(device_.delay)];
+    if (acting.force == V::Zero() && acting.torque == V::Zero()) {
+      made_before_ = from_motors - lost_to_friction;
+      changes_ = 0;
+    } else {
+      changes_ += quantised(acting.force - acted_before_.force, acting.torque - acted_before_.torque);
+    }
+    acted_before_ = acting;
+    most_quantised_ = (std::max)(most_quantised_, changes_ + quantised(acting.force, acting.torque));
     for (std::size_t i = commands_.size() - 1; i > 0; --i) commands_[i] = commands_[i - 1];
     const double elapsed = device_.period * (1 + device_.jitter * (2 * random() - 1));
     advance(script, elapsed);
@@ -154,6 +167,10 @@ class ClosedLoop {
     double ticks = 0;
   };
 
+  [[nodiscard]] double quantised(const V& force, const V& torque) const {
+    return (device_.resolution * force.lpNorm<1>() + device_.angular_resolution * torque.lpNorm<1>()) / 2;
+  }
+
   /// Uniform in [0, 1), by splitmix64.
   double random() {
     std::uint64_t z = random_ += 0x9e3779b97f4a7c15u;
@@ -195,41 +212,50 @@ class ClosedLoop {
     return mean;
   }
 
+  // Within a tick the hand's target moves evenly, and turns are added as vectors.
   template <class Script>
   void advance(const Script& script, double elapsed) {
     const int count = (std::max)(1, static_cast<int>(std::ceil(elapsed / 2e-5 - 1e-9)));
     const double h = elapsed / count;
+    const HandTarget target = script(t + elapsed / 2);
+    const double g = target.grip;
+    const bool turns = device_.inertia > 0;
+    V position = target.position - (elapsed - h) / 2 * target.velocity, turned = V::Zero(),
+      stretch = V::Zero();
+    if (turns && g > 0)
+      stretch = turn_of(turned_by(target.turn) * R.transpose()) - (elapsed - h) / 2 * target.spin;
     for (int k = 0; k < count; ++k) {
-      const HandTarget target = script(t + h / 2);
-      const double g = target.grip;
       x += h * step(v, acting.force,
-                    {g * hand_.stiffness, g * hand_.damping, V(target.position - x), target.velocity},
+                    {g * hand_.stiffness, g * hand_.damping, V(position - x), target.velocity},
                     {device_.mass, device_.viscous, device_.coulomb}, h);
-      if (device_.inertia > 0) {
-        const V stretch = g > 0 ? turn_of(turned_by(target.turn) * R.transpose()) : V::Zero();
-        const V turn =
-            h * step(w, acting.torque,
-                     {g * hand_.angular_stiffness, g * hand_.angular_damping, stretch, target.spin},
-                     {device_.inertia, device_.angular_viscous, device_.angular_coulomb}, h);
-        R = turned_by(turn) * R;
-      } else if (g > 0) {
-        R = turned_by(target.turn);
+      position += h * target.velocity;
+      if (turns) {
+        turned += h * step(w, acting.torque,
+                           {g * hand_.angular_stiffness, g * hand_.angular_damping, V(stretch - turned),
+                            target.spin},
+                           {device_.inertia, device_.angular_viscous, device_.angular_coulomb}, h);
+        stretch += h * target.spin;
       }
-      t += h;
-      most_to_hand = (std::max)(most_to_hand, to_hand);
+      most_made_ = (std::max)(most_made_, from_motors - lost_to_friction - made_before_);
     }
-    R = Eigen::Quaternion<double>(R).normalized().toRotationMatrix();
+    t += elapsed;
+    if (turns)
+      R = Eigen::Quaternion<double>(turned_by(turned) * R).normalized().toRotationMatrix();
+    else if (g > 0)
+      R = turned_by(target.turn);
   }
 
   LoopDevice device_;
   LoopHand hand_;
   std::array<Wrench<double>, 4> commands_{};  // newest first
   double since_ = 0;                          // the last tick that came [s]
+  Wrench<double> acted_before_;
+  double most_made_ = 0, made_before_ = 0, most_quantised_ = 0, changes_ = 0;
   Window window_;
   std::uint64_t random_;
 };
 
-/// A hand that has let go.
-inline constexpr auto let_go = [](double) { return HandTarget{.grip = 0}; };
+/// Nobody holds the stylus.
+inline constexpr auto nobody = [](double) { return HandTarget{.grip = 0}; };
 
 }  // namespace palpate::test

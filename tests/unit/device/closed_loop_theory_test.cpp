@@ -43,7 +43,7 @@ double growth(const LoopDevice& device, double K, double B) {
   const auto largest = [&](double end) {
     double most = 0;
     while (loop.t < end) {
-      loop.tick(test::let_go, wall);
+      loop.tick(test::nobody, wall);
       most = (std::max)(most, K * loop.x.squaredNorm() + device.mass * loop.v.squaredNorm());
     }
     return most;
@@ -62,10 +62,10 @@ double made_at_constant_speed(LoopDevice device, double K, double v, double star
   device.mass = 1e12;  // 1 N for a second: 1e-12 m/s
   Wall wall{.K = K, .both_sides = false};
   ClosedLoop loop(device, {}, V(start, 0, 0), V(-v, 0, 0));
-  for (int i = 0; i < ticks; ++i) loop.tick(test::let_go, wall);
+  for (int i = 0; i < ticks; ++i) loop.tick(test::nobody, wall);
   loop.v = V(v, 0, 0);
   loop.x.x() += shift;
-  while (loop.x.x() < 0 || loop.acting.force.x() > 0) loop.tick(test::let_go, wall);
+  while (loop.x.x() < 0 || loop.acting.force.x() > 0) loop.tick(test::nobody, wall);
   return loop.from_motors - loop.lost_to_friction;
 }
 
@@ -100,7 +100,7 @@ TEST_CASE("closed loop: energies of hand, motors, friction and arm add up, turni
 TEST_CASE("closed loop: friction holds the arm up to f_c and no further, without creep") {
   for (const double force : {0.099, 0.101}) {
     ClosedLoop loop({.coulomb = 0.1}, {}, V::Zero());
-    loop.run(0.2, test::let_go, [&](const Pose<double>&, double) {
+    loop.run(0.2, test::nobody, [&](const Pose<double>&, double) {
       return Wrench<double>{V(force, 0, 0), V::Zero()};
     });
     // m v' + b v = F - f_c: x = a (t - tau (1 - exp(-t / tau))) with a = (F - f_c)/b, tau = m/b.
@@ -117,7 +117,7 @@ TEST_CASE("closed loop: the same seed gives the same bits; delay, jitter and los
     ClosedLoop loop(device, {}, V(1e-3, 0, 0));
     int calls = 0;
     double least = 1, most = 0;
-    loop.run(1, test::let_go, [&](const Pose<double>& X, double dt) {
+    loop.run(1, test::nobody, [&](const Pose<double>& X, double dt) {
       if (++calls > 1) least = (std::min)(least, dt), most = (std::max)(most, dt);
       return Wrench<double>{V(-500 * X.translation), V::Zero()};
     });
@@ -138,7 +138,7 @@ TEST_CASE("closed loop: the same seed gives the same bits; delay, jitter and los
     ClosedLoop loop({.delay = delay}, {}, V::Zero());
     int first = -1;
     for (int i = 0; i < 6; ++i) {
-      loop.tick(test::let_go, [](const Pose<double>&, double) {
+      loop.tick(test::nobody, [](const Pose<double>&, double) {
         return Wrench<double>{V::UnitX(), V::Zero()};
       });
       if (first < 0 && loop.acting.force != V::Zero()) first = i;
@@ -198,8 +198,8 @@ TEST_CASE("closed loop: a bounce off a wall gives back exp((2 d + 1) pi omega T/
         Wall wall{.K = K, .both_sides = false};
         ClosedLoop loop(device, {}, V(speed * device.period * (i + 0.5) / phases, 0, 0), V(-speed, 0, 0));
         const double before = loop.kinetic();
-        loop.tick(test::let_go, wall);
-        while (loop.x.x() < 0 || loop.acting.force.x() > 0) loop.tick(test::let_go, wall);
+        loop.tick(test::nobody, wall);
+        while (loop.x.x() < 0 || loop.acting.force.x() > 0) loop.tick(test::nobody, wall);
         ratio += loop.kinetic() / before / phases;
       }
       const double omega = std::sqrt(K / device.mass), tau = (d + 0.5) * device.period;
@@ -242,10 +242,10 @@ TEST_CASE(
       ClosedLoop loop(device, {}, V(phase(random), 0, 0));
       for (int i = 0; i < 500; ++i) {
         loop.v.x() = speed(random);
-        loop.tick(test::let_go, wall);
+        loop.tick(test::nobody, wall);
       }
       loop.v.x() = fastest;
-      while (loop.x.x() < step || loop.acting.force.x() > 0) loop.tick(test::let_go, wall);
+      while (loop.x.x() < step || loop.acting.force.x() > 0) loop.tick(test::nobody, wall);
       CHECK(loop.from_motors < loop.lost_to_friction);
     }
   }
