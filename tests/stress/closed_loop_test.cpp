@@ -2,8 +2,8 @@
 
 /// @file Device, hand and solver in closed loop through the chain to the motors: taps, presses, slides, twists,
 /// rocks, stylus let go and thrown, over everything that a solver can be made of. Nothing is made at any time,
-/// and nothing buzzes. PALPATE_STRESS in the environment (tests/run --stress): more devices, grips, delays and
-/// rates.
+/// and nothing buzzes. PALPATE_STRESS in the environment (tests/run --stress): more rates, grips and
+/// delays.
 
 #include <palpate/device/servo_chain.hpp>
 #include <palpate/geometry/box.hpp>
@@ -261,7 +261,7 @@ TEST_CASE("stress: with the chain no hand gains anything from any scene, and not
   std::vector<Case> cases{{1000, 1000, 1, 1}, {4000, 1000, 0.3, 2}};
   if (thorough) {
     cases.clear();
-    for (const double K : {300.0, 1000.0, 2000.0, 4000.0})
+    for (const double K : {1000.0, 2000.0})
       for (const double rate : {1000.0, 4000.0})
         for (const double grip : {1.0, 0.3})
           for (const int delay : {0, 1, 2}) cases.push_back({K, rate, grip, delay});
@@ -287,7 +287,7 @@ TEST_CASE("stress: with the chain no hand gains anything from any scene, and not
         all.quantised = (std::max)(all.quantised, f.quantised);
         all.steps = (std::max)(all.steps, f.amplitude / device.resolution);
         if (play == Play::press) all.felt = (std::min)(all.felt, felt(f, scene, device));
-        if (thorough) {
+        if (thorough && c.rate == 1000 && c.K == 2000) {
           const PlayFigures bare =
               test::play(device, {}, {play, scene.ground, c.grip}, scene.bare(device), c.grip);
           all.bare = (std::max)(all.bare, bare.made);
@@ -298,7 +298,8 @@ TEST_CASE("stress: with the chain no hand gains anything from any scene, and not
     std::printf("%-36s in a touch made %8.2g mJ, quantisation %5.2f mJ, at rest %4.1f steps, felt %.2f", name,
                 1e3 * all.made, 1e3 * all.quantised, all.steps, all.felt);
     if (thorough)
-      std::printf("; without the chain made %6.3g mJ, at rest %5.1f steps", 1e3 * all.bare, all.bare_steps);
+      std::printf("; without the chain, 2,000 N/m at 1 kHz, made %6.3g mJ, at rest %5.1f steps",
+                  1e3 * all.bare, all.bare_steps);
     std::printf("\n");
   }
 }
