@@ -332,7 +332,8 @@ class ContactSolver {
     wrench.force += contact.force;
     if constexpr (std::same_as<Acting, AtContact>) wrench.torque += sum.torque;
     if constexpr (is_relieved) {
-      if (!(sum.magnitude > S(0)) && sum.full > S(0)) {  // within another's dent: it does not touch
+      // Within another's dent it does not touch; side walls that are left may still push.
+      if (!(sum.magnitude > S(0)) && sum.full > S(0) && contact.force == Vec3<S>::Zero()) {
         if constexpr (has_memory) detail::add_dent(force_, state.law_[k], state.contacts_);
         return;
       }
