@@ -22,6 +22,7 @@
 #include <palpate/core/fixed_vector.hpp>
 #include <palpate/core/pose.hpp>
 #include <palpate/core/status.hpp>
+#include <palpate/device/recorder.hpp>
 #include <palpate/device/servo_chain.hpp>
 #include <palpate/device/servo_statistics.hpp>
 #include <palpate/device/spsc_ring.hpp>
@@ -85,6 +86,7 @@ class HapticDevice {
     bool reset_encoders =
         false;               ///< devices without a home sensor: true when the arm rests in its neutral pose
     std::size_t record = 0;  ///< ticks to keep for recording()
+    std::size_t history = 5000;  ///< ticks to keep for history(), the last ones
   };
 
   /// One tick.
@@ -110,7 +112,8 @@ class HapticDevice {
       : solver_(solver),
         params_(params),
         period_(1000000000 / static_cast<std::int64_t>((std::max)(params.rate, 1ul))),
-        chain_(std::in_place, solver, params.chain) {
+        chain_(std::in_place, solver, params.chain),
+        history_(params.history) {
     if (params.rate < 1) fail("HapticDevice", "rate [Hz] must be > 0", static_cast<double>(params.rate));
     recording_.resize(params.record);
 
@@ -190,6 +193,8 @@ class HapticDevice {
   /// After stop(): the first `record` ticks.
   [[nodiscard]] const Record* recording() const noexcept { return recording_.data(); }
   [[nodiscard]] std::size_t recorded() const noexcept { return recorded_; }
+  /// After stop(): the last `history` ticks, for save_ticks() and replay(): what led to a fault.
+  [[nodiscard]] std::vector<TickRecord> history() const { return history_.ticks(); }
 
  private:
   static constexpr int max_drain = 16;  // errors read per tick; the rest waits for the next
@@ -293,6 +298,16 @@ class HapticDevice {
     record_.output = out.wrench;
     record_.gate = out.gate;
     record_.passivity = out.passivity;
+    history_.add({.tick = statistics_.ticks + 1,
+                  .dt = record_.dt,
+                  .tool = out.tool,
+                  .begins_anew = begins_anew_,
+                  .wrench = out.result.wrench,
+                  .status = out.result.status,
+                  .sent = out.wrench,
+                  .gate = out.gate,
+                  .passivity = out.passivity});
+    begins_anew_ = false;
 
     const Vec3<double>& f = record_.output.force;
     const HDdouble force[3] = {f.x(), f.y(), f.z()};  // N
@@ -333,7 +348,10 @@ class HapticDevice {
   }
 
   /// After a jump of position or force: no contact state from before may command a force.
-  void forget() noexcept { chain_->reset(); }
+  void forget() noexcept {
+    chain_->reset();
+    begins_anew_ = true;
+  }
 
   void calibrate() noexcept {
     const HDenum status = hdCheckCalibration();
@@ -381,6 +399,8 @@ class HapticDevice {
   ServoStatistics statistics_;
   std::vector<Record> recording_;
   std::size_t recorded_ = 0;
+  Recorder history_;
+  bool begins_anew_ = false;  // the solver was reset since the last tick
 
   std::atomic<bool> disarm_request_{false};
   SpscRing<DeviceError, 64> errors_;         // from the servo thread

@@ -24,6 +24,8 @@ struct Options {
   std::string script = "figure10";
   std::string out = "out";
   std::string scene;          ///< empty: none; "all": one after the other
+  std::string replay;         ///< a record of ticks to play again; empty: none
+  std::string given;          ///< the options that make the scene, as they were given
   std::string shape;          ///< none, skeleton, half-space or response; empty: the default
   bool paper = false;         ///< the model as the paper has it
   double scale = 1;           ///< of mesh files
@@ -65,6 +67,8 @@ inline constexpr const char* usage =
   --rate HZ       servo rate asked of the device (default 1000)
   --stepped       simulated time instead of real time: same bits in every run (stand-in device only)
   --out FOLDER    where the results go (default out)
+  --replay FILE   plays the ticks of FILE, which a run with the same options has left in its folder, to the
+                  same solver, and says whether all wrenches have the same bits (see examples/replay)
 
   --scene NAME    a preset of object, tool and script in out/NAME, with --paper out/paper/NAME, in simulated
                   time: ellipsoid (Fig. 10), cube-head and cube-tail (Fig. 11), heart (Fig. 12), or all
@@ -80,6 +84,7 @@ inline Options parse(int argc, char** argv) {
   Options options;
   for (int i = 1; i < argc; ++i) {
     const std::string name = argv[i];
+    const int first = i;
     const auto value = [&]() -> std::string {
       if (i + 1 >= argc) refuse(name + " needs a value");
       return argv[++i];
@@ -126,6 +131,8 @@ inline Options parse(int argc, char** argv) {
       options.at_x = place(), options.at_z = place();
     else if (name == "--out")
       options.out = value();
+    else if (name == "--replay")
+      options.replay = value();
     else if (name == "--scale")
       options.scale = number();
     else if (name == "--rate")
@@ -142,6 +149,8 @@ inline Options parse(int argc, char** argv) {
       options.help = true;
     else
       refuse("unknown option " + name);
+    if (name == "--out" || name == "--replay" || name == "--scene") continue;
+    for (int k = first; k <= i; ++k) options.given += std::string(argv[k]) + ' ';
   }
   return options;
 }

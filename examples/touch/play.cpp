@@ -2,6 +2,8 @@
 
 #include "play.hpp"
 
+#include <palpate/device/recorder.hpp>
+
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -83,6 +85,28 @@ class Pictured {
   double seconds_ = 0;
 };
 
+/// The recorded ticks once more.
+int play_again(const std::string& file, Feel& feel) {
+  const palpate::LoadedTicks loaded = palpate::load_ticks(file);
+  const palpate::Replayed again = palpate::replay(feel, loaded.ticks);
+  std::printf("%zu ticks of %s, %zu skipped before the first without contact: ", again.ticks, file.c_str(),
+              again.skipped);
+  if (again.same) {
+    std::printf("all wrenches have the same bits\n");
+    return 0;
+  }
+  const palpate::TickRecord& was = again.recorded;
+  std::printf("tick %llu differs\n", static_cast<unsigned long long>(was.tick));
+  const auto print = [](const char* when, const palpate::Wrench<S>& w, palpate::Status status) {
+    std::printf("%-9s F %.17g %.17g %.17g N, torque %.17g %.17g %.17g N m, status 0x%x\n", when, w.force.x(),
+                w.force.y(), w.force.z(), w.torque.x(), w.torque.y(), w.torque.z(),
+                static_cast<unsigned>(status));
+  };
+  print("recorded", was.wrench, was.status);
+  print("now", again.wrench, again.status);
+  return 1;
+}
+
 }  // namespace
 
 int play(Options options) {
@@ -91,8 +115,10 @@ int play(Options options) {
     options.out += "/" + options.scene;
     options.stepped = !options.real_time;
   }
-  std::filesystem::create_directories(options.out);
-  std::filesystem::remove_all(options.out + "/frames");  // those of an earlier run
+  if (options.replay.empty()) {
+    std::filesystem::create_directories(options.out);
+    std::filesystem::remove_all(options.out + "/frames");  // those of an earlier run
+  }
   const Body body = make_body(options);
   if (options.shape.empty())
     options.shape = options.paper ? "skeleton" : body.is_file ? "half-space" : "response";
@@ -101,6 +127,7 @@ int play(Options options) {
   Answer answer = make_answer(options, body, tool);
   const bool drawn = answer.shape.exists();
   const std::unique_ptr<Feel> feel = make_feel(options, body, tool, std::move(answer));
+  if (!options.replay.empty()) return play_again(options.replay, *feel);
 
   const std::string title = title_of(options, body);
   Pictured picture(*feel, body, script.seconds);

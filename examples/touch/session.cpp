@@ -79,7 +79,7 @@ int perform(const Options& options, Feel& feel, const Tool& tool, const Script& 
   params.chain.mapping.offset = top;
   params.chain.mapping.centre_of_mass = tool.centre_of_mass;
   params.chain.stiffness = feel.stiffness_below(top, 0.1, 3);
-  params.record = static_cast<std::size_t>(1.2 * script.seconds * options.rate);
+  params.record = params.history = static_cast<std::size_t>(1.2 * script.seconds * options.rate);
 
 #ifdef PALPATE_STANDIN
   standin::Constants arm;  // the size of a large desktop arm
@@ -145,6 +145,9 @@ int perform(const Options& options, Feel& feel, const Tool& tool, const Script& 
   if (terminal) std::printf("\n");
   print_summary(device);
   write_csv(options.out + "/forces.csv", device);
+  const std::string scene = options.scene.empty() ? "" : "--scene " + options.scene;
+  palpate::save_ticks(device.history(), options.out + "/ticks.txt", options.given + scene);
+  std::printf("wrote          %s/ticks.txt, which examples/replay plays again\n", options.out.c_str());
   finish(device);
   return 0;
 }

@@ -90,4 +90,5 @@
 #include <palpate/device/triple_buffer.hpp>
 #include <palpate/device/workspace.hpp>
 #include <palpate/device/servo_chain.hpp>
+#include <palpate/device/recorder.hpp>
 // clang-format on

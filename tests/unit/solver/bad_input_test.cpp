@@ -156,7 +156,7 @@ void check_rows(const char* what, const Make& make) {
     if (row.solver == Solver::refused) {
       CHECK(bad.wrench.force == V::Zero());
       CHECK(bad.wrench.torque == V::Zero());
-      CHECK(touch.contacts().empty());
+      for (const ContactState<double>& c : touch.contacts()) CHECK(c.points == 0);  // dents of the body
     } else {
       CHECK(has(bad.status, Status::contact));
       Touch fresh = make();

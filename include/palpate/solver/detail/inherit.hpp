@@ -148,9 +148,11 @@ void inherit(const Friction& law_of_friction, const Force& force, const Regions&
       // Half of the digits: where the stretch takes all, the difference is rounding, and neither its sign nor
       // its size must count.
       constexpr S rounding = S(1) / S(std::uint64_t(1) << std::numeric_limits<S>::digits / 2);
-      if (left > rounding * energy && about_normal != S(0)) {
-        memory[k].twist.stiffness = about_normal * (about_normal / (S(2) * left));
-        set_twist(memory[k].twist, rotation, anchor.normal, -about_normal / memory[k].twist.stiffness, S(0));
+      const S stiffness = about_normal * (about_normal / (S(2) * left));
+      const S angle = -about_normal / stiffness;
+      if (left > rounding * energy && is_finite(angle)) {  // not finite: the torque is none in S
+        memory[k].twist.stiffness = stiffness;
+        set_twist(memory[k].twist, rotation, anchor.normal, angle, S(0));
       }
     }
     anchor.origin = anchor.tip + stretch * along + depth * anchor.normal;
