@@ -88,6 +88,11 @@ int perform(const Options& options, Feel& feel, const Tool& tool, const Script& 
   for (int i = 0; i < 3; ++i) arm.workspace[i] = -120, arm.workspace[3 + i] = 120;
   arm.output_dof = 6;
   arm.resolution = 0.03;
+  params.chain.device = {.mass = arm.mass,
+                         .damping = arm.viscous,
+                         .friction = arm.coulomb,
+                         .resolution = 1e-3 * arm.resolution,
+                         .delay = 1};
   standin::reset(arm);
   standin::real_time(!options.stepped);
   struct Hand {

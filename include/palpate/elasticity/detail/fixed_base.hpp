@@ -76,7 +76,8 @@ class FixedBase {
   /// The reaction to a force f at x.
   [[nodiscard]] Screw reaction(const V& x, const V& f) const noexcept {
     Screw q;
-    q << -f, -(x - middle_).cross(f);
+    q.head<3>() = -f;  // by halves: `<<` makes gcc 12 warn of bounds with -O3 -march=native
+    q.tail<3>() = -(x - middle_).cross(f);
     return q;
   }
   /// The disc as y, from its middle, sees it.
