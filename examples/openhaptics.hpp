@@ -36,7 +36,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <optional>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -298,15 +297,7 @@ class HapticDevice {
     record_.output = out.wrench;
     record_.gate = out.gate;
     record_.passivity = out.passivity;
-    history_.add({.tick = statistics_.ticks + 1,
-                  .dt = record_.dt,
-                  .tool = out.tool,
-                  .begins_anew = begins_anew_,
-                  .wrench = out.result.wrench,
-                  .status = out.result.status,
-                  .sent = out.wrench,
-                  .gate = out.gate,
-                  .passivity = out.passivity});
+    history_.add(record_of(out, statistics_.ticks + 1, record_.dt, begins_anew_));
     begins_anew_ = false;
 
     const Vec3<double>& f = record_.output.force;

@@ -75,11 +75,7 @@ Control control(Chain chain, double K, const NamedDevice& of, const LoopDevice& 
   const auto through = [&](auto* chain_type, auto&& params) {
     using Made = std::remove_pointer_t<decltype(chain_type)>;
     typename Made::Params p{};
-    p.device = {.mass = device.mass,
-                .damping = device.viscous,
-                .friction = device.coulomb,
-                .resolution = device.resolution,
-                .delay = device.delay};
+    p.device = test::model_of(device);
     params(p);
     const auto made = std::make_shared<Made>(*solver, p);
     return Control([solver, made](const Pose<double>& X, double dt) { return made->tick(X, dt).wrench; });

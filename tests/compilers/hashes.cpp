@@ -16,6 +16,8 @@
 #include <palpate/law/friction/power_law.hpp>
 #include <palpate/solver/contact_solver.hpp>
 
+#include <support/joined.hpp>
+
 #include <cinttypes>
 #include <cstdio>
 #include <cstring>
@@ -60,10 +62,7 @@ ToolPoints<S> pins() {
   MeshData<S> mesh =
       Box<S>({.half = Vec3<S>(S(2e-3), S(4e-3), S(2e-3)), .centre = Vec3<S>(S(-6e-3), S(4e-3), S(0))})
           .mesh(26);
-  const MeshData<S> other = mesh;
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (const Vec3<S>& v : other.vertices) mesh.vertices.push_back(v + Vec3<S>(S(0.012), S(0), S(0)));
-  for (const auto& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  test::append<S>(mesh, mesh, Vec3<S>(S(0.012), S(0), S(0)));
   return ToolPoints<S>(TriangleMesh<S>(mesh),
                        {.contact_area = S(16e-6), .centre_of_mass = Vec3<S>(S(0), S(0.05), S(0))});
 }

@@ -72,19 +72,5 @@ void relaxing(Bytes& in) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  Bytes in(data, size);
-  switch (in.byte() % 4) {
-    case 0:
-      softening(in);
-      break;
-    case 1:
-      damped(in);
-      break;
-    case 2:
-      plastic(in);
-      break;
-    default:
-      relaxing(in);
-  }
-  return 0;
+  return palpate::fuzz::play({softening, damped, plastic, relaxing}, data, size);
 }

@@ -15,6 +15,8 @@
 #include <palpate/law/friction/power_law.hpp>
 #include <palpate/luo_xiao/beam/region_skeletons.hpp>
 
+#include <support/joined.hpp>
+
 namespace {
 using namespace palpate;
 using fuzz::Bytes;
@@ -28,9 +30,7 @@ ToolPoints<S> dumbbell() {
   MeshData<S> mesh = Box<S>({.half = Vec3<S>(S(6e-3), S(4e-3), S(4e-3))}).mesh(26);
   const MeshData<S> other = mesh;
   for (Vec3<S>& v : mesh.vertices) v.x() -= S(0.015);
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (const Vec3<S>& v : other.vertices) mesh.vertices.push_back(v + S(0.015) * Vec3<S>::UnitX());
-  for (const auto& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  test::append<S>(mesh, other, S(0.015) * Vec3<S>::UnitX());
   const TriangleMesh<S> body(mesh);
   return ToolPoints<S>(body, {.contact_area = body.area() / S(4), .centre_of_mass = {S(0), S(0.05), S(0)}});
 }
@@ -105,22 +105,5 @@ void skeletons(Bytes& in) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  Bytes in(data, size);
-  switch (in.byte() % 5) {
-    case 0:
-      mesh(in);
-      break;
-    case 1:
-      samples(in);
-      break;
-    case 2:
-      box(in);
-      break;
-    case 3:
-      compliant(in);
-      break;
-    default:
-      skeletons(in);
-  }
-  return 0;
+  return palpate::fuzz::play({mesh, samples, box, compliant, skeletons}, data, size);
 }

@@ -143,4 +143,12 @@ void walk(Solver& solver, const Scene& scene, Bytes& in) {
   }
 }
 
+/// The first byte chooses the walk.
+template <std::size_t N>
+int play(void (*const (&walks)[N])(Bytes&), const std::uint8_t* data, std::size_t size) {
+  Bytes in(data, size);
+  walks[in.byte() % N](in);
+  return 0;
+}
+
 }  // namespace palpate::fuzz

@@ -52,17 +52,6 @@ struct Scene {
   std::function<Control(const LoopDevice&)> chained, bare;
 };
 
-DeviceModel<double> model_of(const LoopDevice& device) {
-  DeviceModel<double> model{.mass = device.mass,
-                            .damping = device.viscous,
-                            .rotational_damping = device.angular_viscous,
-                            .friction = device.coulomb,
-                            .resolution = device.resolution,
-                            .delay = device.delay};
-  if (device.inertia > 0) model.inertia = device.inertia;
-  return model;
-}
-
 /// `make(scale)`: a solver of its own that is `scale` times as stiff as usual.
 template <class Solver>
 Scene scene(const char* name, std::shared_ptr<Solver> solver, const V& centre_of_mass,
@@ -71,7 +60,7 @@ Scene scene(const char* name, std::shared_ptr<Solver> solver, const V& centre_of
     using Chain = typename decltype(chain_type)::type;
     return [=](const LoopDevice& device) {
       solver->reset();
-      typename Chain::Params params{.device = model_of(device), .has_torque = device.inertia > 0};
+      typename Chain::Params params{.device = test::model_of(device), .has_torque = device.inertia > 0};
       params.mapping.centre_of_mass = centre_of_mass;
       params.mapping.scale = scale;
       params.mapping.offset = (1 - scale) * ground.at;

@@ -24,6 +24,7 @@
 #include <palpate/solver/contact_solver.hpp>
 
 #include <support/check.hpp>
+#include <support/joined.hpp>
 
 #include <doctest/doctest.h>
 
@@ -190,11 +191,7 @@ TEST_CASE("conditioning: under a mesh's pressure, coupled regions have one answe
         const TriangleMesh<double> body(Ellipsoid<double>({.axes = u.length * V(6, 4, 4)}).mesh(200));
         MeshData<double> pins =
             Box<double>({.half = u.length * V(1.5, 2, 1.5), .centre = u.length * V(-3, 2, 0)}).mesh(26);
-        const MeshData<double> other = pins;
-        const auto first = static_cast<std::uint32_t>(pins.vertices.size());
-        for (const V& v : other.vertices) pins.vertices.push_back(v + u.length * V(6, 0, 0));
-        for (const auto& t : other.triangles)
-          pins.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+        test::append<double>(pins, pins, u.length * V(6, 0, 0));
         return Solver::Parts{
             MeshSurface<double>(body),
             ToolPoints<double>(TriangleMesh<double>(pins), {.contact_area = u.length * u.length}),

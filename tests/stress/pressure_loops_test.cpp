@@ -8,6 +8,7 @@
 #include <palpate/solver/contact_solver.hpp>
 
 #include <support/check.hpp>
+#include <support/joined.hpp>
 
 #include <array>
 #include <numbers>
@@ -76,12 +77,7 @@ TriangleMesh<double> pin(double spacing) {
 TriangleMesh<double> two_pins(double spacing) {
   const TriangleMesh<double> one = pin(spacing);
   MeshData<double> mesh;
-  for (const double x : {-0.004, 0.004}) {
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (const V& v : one.vertices()) mesh.vertices.push_back(v + V(x, 0, 0));
-    for (const auto& t : one.triangles())
-      mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
-  }
+  for (const double x : {-0.004, 0.004}) test::append<double>(mesh, one.data(), V(x, 0, 0));
   return TriangleMesh<double>(std::move(mesh));
 }
 

@@ -5,6 +5,7 @@
 /// numbers in every run.
 
 #include <palpate/core/pose.hpp>
+#include <palpate/device/device_model.hpp>
 
 #include <Eigen/Geometry>
 
@@ -37,6 +38,18 @@ struct LoopDevice {
   double lost = 0;       ///< share of the ticks that never come; the force is held
   std::uint64_t seed = 1;
 };
+
+/// The device as a chain to the motors has to know it.
+[[nodiscard]] inline DeviceModel<double> model_of(const LoopDevice& device) {
+  DeviceModel<double> model{.mass = device.mass,
+                            .damping = device.viscous,
+                            .rotational_damping = device.angular_viscous,
+                            .friction = device.coulomb,
+                            .resolution = device.resolution,
+                            .delay = device.delay};
+  if (device.inertia > 0) model.inertia = device.inertia;
+  return model;
+}
 
 /// Springs and dampers from where the hand wants the stylus to where it is.
 struct LoopHand {

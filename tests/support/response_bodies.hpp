@@ -4,6 +4,7 @@
 /// @file Bodies that no closed form knows, for the response field: concave, thin, in two pieces, with edges.
 /// About 100 mm.
 
+#include "support/joined.hpp"
 #include "support/response_meshes.hpp"
 
 #include <vector>
@@ -67,10 +68,7 @@ template <class Filled>
 }
 [[nodiscard]] inline MeshData<double> two_spheres_mesh() {
   MeshData<double> mesh = ellipsoid_mesh(Vec3<double>(0.03, 0.03, 0.03), 8);
-  const MeshData<double> other = ellipsoid_mesh(Vec3<double>(0.02, 0.03, 0.02), 8);
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (const Vec3<double>& p : other.vertices) mesh.vertices.push_back(p + Vec3<double>(0.06, 0, 0));
-  for (const auto& t : other.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  append<double>(mesh, ellipsoid_mesh(Vec3<double>(0.02, 0.03, 0.02), 8), Vec3<double>(0.06, 0, 0));
   return mesh;
 }
 

@@ -5,6 +5,8 @@
 
 #include <palpate/core/error.hpp>
 
+#include <limits>
+
 namespace palpate {
 
 /// The device at the stylus point. Passivity is promised for a device that has at least this mass, damping

@@ -67,6 +67,7 @@ template <Real S>
 class Gate {
  public:
   static constexpr bool active = true;
+  static constexpr S max_limit = S(1e9);  ///< squares and quotients of these are safe in float
 
   /// Limits are in [1e-6, 1e9], waits >= 0. Infinity switches off `max_speed` and `continuous_force`; nothing
   /// else.
@@ -167,8 +168,7 @@ class Gate {
 
  private:
   using Bits = std::conditional_t<sizeof(S) == sizeof(std::uint32_t), std::uint32_t, std::uint64_t>;
-  static constexpr S min_limit = S(1e-6),
-                     max_limit = S(1e9);  // squares and quotients of these are safe in float
+  static constexpr S min_limit = S(1e-6);
 
   [[nodiscard]] static bool in_range(S x) noexcept {
     return is_finite(x) && x >= min_limit && x <= max_limit;

@@ -5,6 +5,7 @@
 
 #include <palpate/contact/contact_state.hpp>
 #include <palpate/core/pose.hpp>
+#include <palpate/device/detail/turned.hpp>
 #include <palpate/device/device_model.hpp>
 
 #include <algorithm>
@@ -80,11 +81,11 @@ class PassivityController {
       reset();
       return {};
     }
-    const Motion moved = advance(stylus, dt);
-    book(moved, dt);
+    const Motion moved = advance(stylus, dt), now = velocity();
+    book(moved, now, dt);
     budget_ = (std::min)(budget_, stored.most);
 
-    Motion v = velocity();
+    Motion v = now;  // of the free arm, when this wrench comes to act
     S left = budget_;
     for (int age = device_.delay; age > 0; --age) {
       const Wrench<S>& flying = sent(age);
@@ -92,7 +93,7 @@ class PassivityController {
       v.rotation += dt / device_.inertia * flying.torque;
       left -= (std::max)(S(0), work(flying, v) * dt);
     }
-    const S going_in = (std::max)(S(0), -work(wrench, velocity()) * dt);
+    const S going_in = (std::max)(S(0), -work(wrench, now) * dt);
     const S in_flight = going_in * (static_cast<S>(device_.delay) + S(0.5)) / S(2);
     if (left + in_flight < stored.least) scale_ = (std::max)(S(0), left + in_flight) / stored.least;
     scale_ = (std::min)(scale_, spends(wrench, v, (std::max)(S(0), left), dt));
@@ -146,13 +147,8 @@ class PassivityController {
     return moved;
   }
 
-  /// From one pose to another; sin instead of the angle, for turns of a few ticks.
   [[nodiscard]] static Motion between(const Pose<S>& from, const Pose<S>& to) noexcept {
-    Motion moved{to.translation - from.translation, Vec3<S>::Zero()};
-    for (int axis = 0; axis < 3; ++axis) {
-      moved.rotation += Vec3<S>(from.rotation.col(axis)).cross(Vec3<S>(to.rotation.col(axis))) / S(2);
-    }
-    return moved;
+    return {to.translation - from.translation, detail::turned(from.rotation, to.rotation)};
   }
 
   [[nodiscard]] S shortest_step() const noexcept {
@@ -184,14 +180,13 @@ class PassivityController {
     return v;
   }
 
-  /// What the hand has put in since the last call.
-  void book(const Motion& moved, S dt) noexcept {
+  /// What the hand has put in since the last call; `v`: the velocity now.
+  void book(const Motion& moved, const Motion& v, S dt) noexcept {
     S in = -work(sent(device_.delay + 1), moved);
     // A step that is longer than others has lost ticks, in which wrenches in flight came to act.
     if (dt > S(1.5) * shortest_step()) {
       for (int age = device_.delay; age > 0; --age) in = (std::min)(in, -work(sent(age), moved));
     }
-    const Motion v = velocity();
     const S lost = device_.damping * v.translation.squaredNorm() * dt +
                    device_.rotational_damping * v.rotation.squaredNorm() * dt +
                    device_.friction * moved.translation.norm();

@@ -30,6 +30,21 @@ struct TickRecord {
   double passivity = 1;  ///< scale of the passivity controller
 };
 
+/// A tick of a ServoChain.
+template <class Output>
+[[nodiscard]] TickRecord record_of(const Output& out, std::uint64_t tick, double dt,
+                                   bool begins_anew) noexcept {
+  return {.tick = tick,
+          .dt = dt,
+          .tool = out.tool,
+          .begins_anew = begins_anew,
+          .wrench = out.result.wrench,
+          .status = out.result.status,
+          .sent = out.wrench,
+          .gate = out.gate,
+          .passivity = out.passivity};
+}
+
 /// A ring of the last ticks. Heap at set-up only; add() is noexcept and copies one record. One thread; read
 /// it when that thread has stopped.
 class Recorder {
@@ -154,7 +169,9 @@ struct Replayed {
 /// that what came before the record does not matter; laws with memory need the record from the loop's first
 /// tick on. Stops at the first tick whose wrench or status has other bits.
 template <class Solver>
-  requires HapticSolver<Solver, double>
+  requires HapticSolver<Solver, double> && requires(Solver& solver) {
+    { solver.reset() } noexcept;
+  }
 [[nodiscard]] Replayed replay(Solver& solver, std::span<const TickRecord> ticks) noexcept {
   Replayed result;
   solver.reset();

@@ -186,7 +186,7 @@ class ServoChain {
 
   /// The largest change of the force [N] that the tool's motion since the last tick explains.
   [[nodiscard]] S explained(const Output& out) const noexcept {
-    if (!(params_.stiffness > S(0)) || !is_usable(out.tool)) return no_limit;
+    if (!(params_.stiffness > S(0)) || !is_usable(out.tool)) return Limits::max_limit;
     S arm = S(0);
     if constexpr (detail::HasContacts<Solver, Result>) {
       for (const ContactState<S>& c : contacts(out.result))
@@ -197,8 +197,6 @@ class ServoChain {
                     S(2) * params_.mapping.scale * params_.device.resolution;
     return S(4) * params_.stiffness * moved;
   }
-
-  static constexpr S no_limit = S(1e9);  // that of Gate
 
   Solver& solver_;
   Params params_;

@@ -5,6 +5,7 @@
 
 #include <palpate/core/error.hpp>
 #include <palpate/core/pose.hpp>
+#include <palpate/device/detail/turned.hpp>
 
 #include <cmath>
 
@@ -80,7 +81,8 @@ class VirtualCoupling {
     }
     const Vec3<S> centre = tool_ * p_.centre_of_mass;
     const Vec3<S> pull = p_.stiffness * (X * p_.centre_of_mass - centre) + contact_.force;
-    const Vec3<S> twist = p_.rotational_stiffness * turned(tool_.rotation, X.rotation) + contact_.torque;
+    const Vec3<S> twist =
+        p_.rotational_stiffness * detail::turned(tool_.rotation, X.rotation) + contact_.torque;
     const Vec3<S> step = pull / (p_.stiffness + p_.contact_stiffness);
     const Vec3<S> turn = twist / (p_.rotational_stiffness + p_.contact_rotational_stiffness);
     const S angle = turn.norm();
@@ -99,7 +101,7 @@ class VirtualCoupling {
     if (!touches_) return {};
     contact_ = contact;
     const Vec3<S> stretch = tool_ * p_.centre_of_mass - X * p_.centre_of_mass;
-    const Vec3<S> turn = turned(X.rotation, tool_.rotation);
+    const Vec3<S> turn = detail::turned(X.rotation, tool_.rotation);
     energy_ = (p_.stiffness * stretch.squaredNorm() + p_.rotational_stiffness * turn.squaredNorm()) / S(2);
     return {p_.stiffness * stretch, p_.rotational_stiffness * turn};
   }
@@ -112,12 +114,6 @@ class VirtualCoupling {
   void reset() noexcept { touches_ = false; }
 
  private:
-  /// Rotation vector from R to Q, its length the sine of the angle: monotone to a right angle.
-  [[nodiscard]] static Vec3<S> turned(const Mat3<S>& R, const Mat3<S>& Q) noexcept {
-    Vec3<S> sum = Vec3<S>::Zero();
-    for (int axis = 0; axis < 3; ++axis) sum += Vec3<S>(R.col(axis)).cross(Vec3<S>(Q.col(axis)));
-    return sum / S(2);
-  }
   /// Rounding of a million ticks must not add up.
   [[nodiscard]] static Mat3<S> orthonormal(const Mat3<S>& R) noexcept {
     const Vec3<S> x = R.col(0).normalized();

@@ -20,7 +20,7 @@ struct Press {
   int steps = 200;                    ///< > 0; chosen: half a percent of the travel
 };
 
-/// The largest tangent stiffness met along a press. Set-up time: 13 evaluations a step.
+/// The largest tangent stiffness met along a press.
 template <Real S>
 struct LargestStiffness {
   S translation = S(0);  ///< [N/m]
@@ -29,6 +29,7 @@ struct LargestStiffness {
 
 /// Over the press: the largest column of -dF/dx and of -dtau/dtheta (stiffness.hpp), which is no less than
 /// the largest single entry and no more than sqrt(3) below the largest principal stiffness.
+/// Set-up time: 13 evaluations a step.
 /// @throws SetupError for a press out of range.
 template <class Solver>
 [[nodiscard]] LargestStiffness<typename Solver::Scalar> largest_stiffness(

@@ -254,6 +254,8 @@ TEST_CASE("device model: each bad value is named; limits are those of the litera
   arm.delay = 1;
   CHECK_RELATIVE(passive_stiffness(arm, 1e-3), 1600.0 / 3, 1e-14);
   CHECK_RELATIVE(quantisation_stiffness(arm), 4000, 1e-14);
+  arm.rotational_damping = 3e-3;
+  CHECK_RELATIVE(passive_rotational_stiffness(arm, 1e-3), 2, 1e-14);
 
   CHECK(check_stability(200.0, 2.0, 1e-3, arm).is_passive());
   CHECK_FALSE(check_stability(300.0, 2.0, 1e-3, arm).is_passive());

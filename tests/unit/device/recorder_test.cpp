@@ -43,15 +43,7 @@ Recorder play(std::size_t capacity) {
     if (anew) solver.reset();
     const auto out = chain.tick(X, 1e-3);
     const test::HeapCount heap;
-    recorder.add({.tick = i,
-                  .dt = 1e-3,
-                  .tool = out.tool,
-                  .begins_anew = anew,
-                  .wrench = out.result.wrench,
-                  .status = out.result.status,
-                  .sent = out.wrench,
-                  .gate = out.gate,
-                  .passivity = out.passivity});
+    recorder.add(record_of(out, i, 1e-3, anew));
     const auto allocations = heap.allocations();
     REQUIRE(allocations == 0);
   }

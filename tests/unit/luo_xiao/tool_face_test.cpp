@@ -2,6 +2,7 @@
 // The scenes of Fig. 10 to 12, as examples/touch plays them, at the depth that the hand's spring holds: what
 // the drawn shape must keep whatever the model gives (V.A.2, V.B, II).
 #include "support/check.hpp"
+#include "support/joined.hpp"
 #include "touch/heart.hpp"
 
 #include <palpate/geometry/mesh_surface.hpp>
@@ -42,11 +43,8 @@ Tool compass(bool both) {
   Tool tool{{}, 5e-5, 0.25e-3};
   for (const double x : {0.0, 36e-3}) {
     if (x > 0 && !both) continue;
-    const auto first = static_cast<std::uint32_t>(tool.mesh.vertices.size());
-    const auto pin = Sphere<double>({.radius = 2e-3, .centre = V(x, 2e-3, 0)}).mesh(400);
-    tool.mesh.vertices.insert(tool.mesh.vertices.end(), pin.vertices.begin(), pin.vertices.end());
-    for (const auto& t : pin.triangles)
-      tool.mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    test::append<double>(tool.mesh, Sphere<double>({.radius = 2e-3, .centre = V(x, 2e-3, 0)}).mesh(400),
+                         V::Zero());
   }
   return tool;
 }

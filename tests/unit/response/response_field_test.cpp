@@ -4,6 +4,7 @@
 #include <palpate/response/setup/load_positions.hpp>
 
 #include "support/check.hpp"
+#include "support/joined.hpp"
 #include "support/no_heap.hpp"
 #include "support/response_bodies.hpp"
 #include "support/response_fields.hpp"
@@ -157,9 +158,7 @@ TEST_CASE("bad input: reported at set-up, zero in a tick") {
   CHECK_THROWS_AS(ResponseField(mesh, [](const V&) { return false; }, {.E = 1}), SetupError);
   CHECK_THROWS_AS(ResponseField(mesh, [](const V&) { return true; }, {.E = 1}), SetupError);
   MeshData<double> two = mesh;  // a second box, fixed nowhere
-  for (const V& p : mesh.vertices) two.vertices.push_back(p + V(0, 3, 0));
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  for (const auto& t : mesh.triangles) two.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  test::append<double>(two, mesh, V(0, 3, 0));
   CHECK_THROWS_AS(ResponseField(two, base, {.E = 1}), SetupError);
   CHECK_THROWS_AS(ResponseField(mesh, std::vector<std::uint32_t>{999}, {.E = 1}), SetupError);
   const ResponseField field(mesh, base, {.E = 1, .mesh = {.vertices = 40}, .threads = 1});
