@@ -181,11 +181,12 @@ class HapticDevice {
 
   [[nodiscard]] const DeviceLimits& limits() const noexcept { return limits_; }
   [[nodiscard]] const Gate<double>::Params& gate_params() const noexcept { return chain_->params().limits; }
-  /// The scene's stiffness, `chain.stiffness`, beside what the device bears.
-  [[nodiscard]] StabilityCheck<double> stability() const noexcept {
+  /// The scene's stiffness, `chain.stiffness`, beside what the device bears; where torque is sent also
+  /// `rotational_stiffness` [N m/rad] about the stylus point.
+  [[nodiscard]] StabilityCheck<double> stability(double rotational_stiffness = 0) const noexcept {
     const typename Chain::Params& p = chain_->params();
     return check_stability(p.stiffness, p.mapping.scale, 1e-9 * static_cast<double>(period_), p.device,
-                           limits_.max_stiffness);
+                           limits_.max_stiffness, p.has_torque ? rotational_stiffness : 0);
   }
   /// After stop().
   [[nodiscard]] const ServoStatistics& statistics() const noexcept { return statistics_; }

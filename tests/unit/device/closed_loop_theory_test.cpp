@@ -168,6 +168,40 @@ TEST_CASE(
   CHECK(growth(fast, 1.05 * K, 0) > 1);
 }
 
+// (b_r T/I is up to 0.016 here, and what is left of the formula's first order below 2 %.)
+TEST_CASE(
+    "closed loop: a turn held in permanent contact is stable up to what passive_rotational_stiffness says") {
+  const auto turn_growth = [](const LoopDevice& device, double K) {
+    ClosedLoop loop(device, {}, V::Zero());
+    loop.R = test::turned_by(V(0, 0.01, 0));
+    const auto spring = [&](const Pose<double>& X, double) {
+      return Wrench<double>{V::Zero(), V(-K * test::turn_of(X.rotation))};
+    };
+    const auto largest = [&](double end) {
+      double most = 0;
+      while (loop.t < end) {
+        loop.tick(test::nobody, spring);
+        const double turn = test::turn_of(loop.R).norm();
+        most = (std::max)(most, K * turn * turn + device.inertia * loop.w.squaredNorm());
+      }
+      return most;
+    };
+    largest(0.5);
+    const double early = largest(1);
+    largest(1.5);
+    return largest(2) / early;
+  };
+  for (const double b : {2e-4, 8e-4})
+    for (const int d : {0, 1, 3}) {
+      const LoopDevice device{.inertia = 5e-5, .angular_viscous = b, .delay = d};
+      const double K = passive_rotational_stiffness(test::model_of(device), device.period);
+      CHECK_RELATIVE(K, 2 * b / ((2 * d + 1) * device.period), 1e-14);
+      INFO("b ", b, ", d ", d);
+      CHECK(turn_growth(device, 0.95 * K) < 1);
+      CHECK(turn_growth(device, 1.05 * K) > 1);
+    }
+}
+
 // In: work of K (n - d) v T over v T for n < N; out: the same upwards. The sums differ by what is checked.
 TEST_CASE(
     "closed loop: holding a wall makes K (v T)^2/2 a tick, (2 d + 1) times that with a delay of d ticks") {

@@ -263,4 +263,19 @@ TEST_CASE("device model: each bad value is named; limits are those of the litera
   CHECK_FALSE(check_stability(300.0, 2.0, 1e-3, arm, 550.0).is_nominal());
   CHECK(std::string(check_stability(300.0, 2.0, 1e-3, arm, 550.0).advice()).find("VirtualCoupling") !=
         std::string::npos);
+
+  // In rotation 2 N m/rad, whatever the workspace's scale: that turns nothing.
+  for (const double scale : {1.0, 2.0}) {
+    CHECK(check_stability(200.0, scale, 1e-3, arm, 0.0, 1.99).is_passive());
+    const auto stiff = check_stability(200.0, scale, 1e-3, arm, 0.0, 2.01);
+    CHECK_FALSE(stiff.is_passive());
+    CHECK_FALSE(stiff.is_passive_in_rotation());
+    CHECK(std::string(stiff.advice()).find("in rotation") != std::string::npos);
+  }
+  // What is worse is said first: the maker's figure, then translation.
+  CHECK(std::string(check_stability(300.0, 2.0, 1e-3, arm, 550.0, 9.0).advice()).find("own figure") !=
+        std::string::npos);
+  CHECK(std::string(check_stability(300.0, 2.0, 1e-3, arm, 0.0, 9.0).advice()).find("in rotation") ==
+        std::string::npos);
+  CHECK(check_stability(300.0, 2.0, 1e-3, arm, 0.0, 1.0).is_passive_in_rotation());
 }
