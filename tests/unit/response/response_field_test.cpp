@@ -252,9 +252,23 @@ TEST_CASE("saved and loaded: the same bits; bytes that are not a saved field are
     CHECK(refused(changed, "checksum"));
   }
   // A list's length changed with the checksum made right: still refused, nothing is read past the end.
+  const auto sign = [&] {
+    const std::uint64_t sum = detail::checksum(std::span<const std::byte>(changed).subspan(32));
+    std::memcpy(changed.data() + 24, &sum, 8);
+  };
   changed = bytes;
   changed[32 + 24 + 6] = std::byte{1};
-  const std::uint64_t sum = detail::checksum(std::span<const std::byte>(changed).subspan(32));
-  std::memcpy(changed.data() + 24, &sum, 8);
+  sign();
   CHECK(refused(changed, "lengths"));
+  // The influence functions come last. Numbers that no body has would leave float's range in a tick's sums.
+  for (const float c : {0x1p64f, -0x1p64f, 3e38f, HUGE_VALF, std::nanf("")}) {
+    changed = bytes;
+    std::memcpy(changed.data() + bytes.size() - 4, &c, 4);
+    sign();
+    CHECK(refused(changed, "influence function"));
+  }
+  constexpr float largest = 0x1.fffffep63f;
+  std::memcpy(changed.data() + bytes.size() - 4, &largest, 4);
+  sign();
+  CHECK_FALSE(refused(changed, "influence function"));
 }

@@ -252,9 +252,11 @@ PALPATE_COMPILED_INLINE ResponseField load_response_field(std::span<const std::b
             "a node is not a triangle's");
     parts.nodes.push_back(node);
   }
-  std::uint32_t beyond = 0;  // top bit: some exponent is all ones; without a branch for each of millions
-  for (float c : parts.influence) beyond |= (std::bit_cast<std::uint32_t>(c) & 0x7fffffffu) + 0x00800000u;
-  require((beyond & 0x80000000u) == 0, "an influence function is not finite");
+  // In 1/m and 1/m^2, a body of 1e-6 m has up to 1e17; from 2^64 on sums leave float's range. Top bit: some
+  // exponent is that large; without a branch for each of millions.
+  std::uint32_t beyond = 0;
+  for (float c : parts.influence) beyond |= (std::bit_cast<std::uint32_t>(c) & 0x7fffffffu) + 0x20800000u;
+  require((beyond & 0x80000000u) == 0, "an influence function is not finite, or too large");
   for (const auto& row : parts.own)
     for (const auto& pair : row.pair)
       for (float e : pair) require(is_finite(e), "a table is not finite");
