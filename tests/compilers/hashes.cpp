@@ -41,6 +41,7 @@ void scene(const char* name, typename Solver::Parts parts) {
     hash ^= hash >> 29;
     if (digits) std::printf("%.17g\n", double(x));
   };
+  if (digits) std::printf("%s\n", name);
   for (int i = 0; i < 400; ++i) {
     const S t = S(i) / S(400), wave = (t - S(0.25)) * (t - S(0.5)) * (t - S(0.75)) * S(16);
     Pose<S> X;

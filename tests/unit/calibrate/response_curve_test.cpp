@@ -32,4 +32,15 @@ TEST_CASE(
       (void)response_curve(field, ResponseContact<double>{.radius = -1, .displacement = V(0, 0, 1)}),
       SetupError);
   CHECK_THROWS_AS((void)response_curve(field, contact, 1), SetupError);
+  // A frictionless ball: its own ticks, each point weighted by 1/F^2.
+  const SphereContact<double> ball{
+      .position = V(0, 0.04, 0), .normal = V::UnitY(), .radius = 0.01, .depth = 0.002};
+  const std::vector<CurvePoint> pressed = response_curve(field, ball, 4);
+  REQUIRE(pressed.size() == 4);
+  CHECK(pressed.back().depth == 0.002);
+  CHECK(pressed.back().force == ResponseTick<1>(field).solve(ball).force);
+  for (const CurvePoint& p : pressed) CHECK_RELATIVE(p.weight * p.force * p.force, 1, 1e-14);
+  for (std::size_t i = 1; i < 4; ++i) CHECK(pressed[i].force > pressed[i - 1].force);
+  CHECK_THROWS_AS((void)response_curve(field, SphereContact<double>{.radius = 0.01}), SetupError);
+  CHECK_THROWS_AS((void)response_curve(field, SphereContact<double>{.depth = 0.001}), SetupError);
 }

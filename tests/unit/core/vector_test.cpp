@@ -57,3 +57,23 @@ TEST_CASE_TEMPLATE(
     CHECK(stable_norm(Vec3<S>(S(2) * v)) == S(2) * stable_norm(v));
   }
 }
+
+TEST_CASE_TEMPLATE("is_positive and is_finite: signs, zeros, the smallest, the largest, infinity and NaN", S,
+                   float, double, long double) {
+  using Limits = std::numeric_limits<S>;
+  for (const S x : {Limits::denorm_min(), Limits::min(), S(1), Limits::max()}) {
+    CHECK(is_positive(x));
+    CHECK_FALSE(is_positive(-x));
+    CHECK(is_finite(x));
+    CHECK(is_finite(-x));
+  }
+  for (const S zero : {S(0), S(-0.0)}) {
+    CHECK_FALSE(is_positive(zero));
+    CHECK(is_finite(zero));
+  }
+  CHECK(is_positive(Limits::infinity()));
+  CHECK_FALSE(is_positive(-Limits::infinity()));
+  CHECK_FALSE(is_positive(Limits::quiet_NaN()));
+  for (const S bad : {Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN()})
+    CHECK_FALSE(is_finite(bad));
+}

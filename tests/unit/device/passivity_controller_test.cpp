@@ -103,6 +103,17 @@ TEST_CASE("passivity controller: a force that takes energy is left alone until i
   CHECK(p.work < 0);
 }
 
+// a s^2 + b s = 0: a push of the motors over one tick does no work if it stops the arm and no more.
+TEST_CASE("passivity controller: with nothing stored a fast entry meets the force that stops the arm") {
+  for (const double asked : {0.3, 0.9, 5.0}) {
+    PassivityController<double> control(bare());
+    constexpr double speed = 0.01;
+    (void)control.pass({}, at(0), {0, 1}, dt);
+    const auto given = control.pass({V(0, asked, 0), V::Zero()}, at(-speed * dt), {0, 1}, dt);
+    CHECK_RELATIVE(given.force.y(), (std::min)(asked, bare().mass * speed / dt), 1e-12);  // 0.45 N
+  }
+}
+
 TEST_CASE("passivity controller: torque does work as well") {
   PassivityController<double> control(bare());
   double work = 0, tick = 0, held = 0;

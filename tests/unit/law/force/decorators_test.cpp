@@ -35,6 +35,17 @@ TEST_CASE_TEMPLATE("saturated: the law's own bits up to the knee, the limit beyo
   CHECK(capped.force(S(1)) == S(3));
 }
 
+TEST_CASE_TEMPLATE("saturated: depth is the inverse of force below, above and at the knee", S, float,
+                   double) {
+  const SaturatedForce capped(DuffingForce<S>({.c1 = S(40), .c3 = S(3e8)}), {.limit = S(3), .knee = S(0.8)});
+  for (const S f : {S(0.1), S(2.3), S(2.4), S(2.401), S(2.7), S(2.9), S(2.99)}) {
+    INFO(f);
+    CHECK(capped.depth(f) < capped.max_depth());
+    CHECK_RELATIVE(capped.force(capped.depth(f)), f, ulps<S>(16));
+  }
+  CHECK(capped.depth(S(3)) == capped.max_depth());
+}
+
 TEST_CASE("saturated: a law that stays within the limit is left alone") {
   const DuffingForce<double> soft({.c1 = 40, .c3 = -7e4});  // 0.37 N at most
   const SaturatedForce capped(soft, {.limit = 0.4});
