@@ -260,6 +260,12 @@ TEST_CASE("saved and loaded: the same bits; bytes that are not a saved field are
   changed[32 + 24 + 6] = std::byte{1};
   sign();
   CHECK(refused(changed, "lengths"));
+  for (const double length : {0.0, -1.0, 1e6, 1e300, HUGE_VAL, std::nan("")}) {  // after E and nu
+    changed = bytes;
+    std::memcpy(changed.data() + 32 + 16, &length, 8);
+    sign();
+    CHECK(refused(changed, "length is out of range"));
+  }
   // The influence functions come last. Numbers that no body has would leave float's range in a tick's sums.
   for (const float c : {0x1p64f, -0x1p64f, 3e38f, HUGE_VALF, std::nanf("")}) {
     changed = bytes;

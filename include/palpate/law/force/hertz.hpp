@@ -40,6 +40,9 @@ class HertzForce {
   explicit HertzForce(const Params& params) : p_(params) {
     require_positive(p_.k, "HertzForce", "k [N/m^1.5] must be > 0 and finite");
     require_finite(p_.compliance, "HertzForce", "compliance [m/N] must be finite");
+    if (!(series_depth() >= (std::numeric_limits<S>::min)()))
+      fail("HertzForce", "compliance [m/N] is so far below 0 that D ends at no depth",
+           static_cast<double>(p_.compliance));
   }
 
   /// F [N] at depth D [m].

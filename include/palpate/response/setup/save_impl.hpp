@@ -194,8 +194,8 @@ PALPATE_COMPILED_INLINE ResponseField load_response_field(std::span<const std::b
   const std::size_t n = vertices.size() / 3, k = nodes.size();
   require(in.at_end() && vertices.size() == 3 * n && n >= 4 && k >= 1 && !parts.triangles.empty(),
           "the lists' lengths are not a field's");
-  require(is_finite(parts.E) && parts.E > 0 && parts.nu >= 0 && parts.nu <= 0.5 &&
-              is_finite(parts.mesh.length) && parts.mesh.length > 0,
+  require(is_finite(parts.E) && parts.E > 0 && parts.nu >= 0 && parts.nu <= 0.5 && parts.mesh.length > 0 &&
+              parts.mesh.length < 1e6,  // as contacts are; a longer reach gets to what stands for no edge
           "E, nu or length is out of range");
   require(
       parts.mesh.fixed_vertex.size() == n && parts.mesh.fixed_triangle.size() == parts.mesh.triangles.size(),
