@@ -8,67 +8,19 @@
 /// is less; the last term through a continuous linear pressure (Taylor and Hood's ten-node tetrahedra). Total
 /// Lagrangian, full Newton, MUMPS. Shares no code with the library.
 
+#include "truth/contact.hpp"
+#include "truth/sparse_equations.hpp"
 #include "truth/tetrahedra.hpp"
 
-#include <dmumps_c.h>
 #include <Eigen/Dense>
 
 #include <cmath>
+#include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 namespace bench {
-
-/// Symmetric indefinite sparse equations by MUMPS; entries of the lower triangle, repeated ones add up.
-class SymmetricEquations {
- public:
-  SymmetricEquations(int n, std::vector<int> rows, std::vector<int> columns)
-      : rows_(std::move(rows)), columns_(std::move(columns)) {
-    id_.par = 1;
-    id_.sym = 2;
-    id_.comm_fortran = -987654;
-    call(-1);
-    for (int k : {0, 1, 2}) id_.icntl[k] = -1;  // prints nothing
-    id_.icntl[13] = 60;                         // percent of room more than it estimates, for pivots
-    id_.n = n;
-    id_.nnz = static_cast<MUMPS_INT8>(rows_.size());
-    id_.irn = rows_.data();
-    id_.jcn = columns_.data();
-    call(1);
-  }
-  SymmetricEquations(const SymmetricEquations&) = delete;
-  SymmetricEquations& operator=(const SymmetricEquations&) = delete;
-  ~SymmetricEquations() {
-    id_.job = -2;
-    dmumps_c(&id_);
-  }
-  /// Replaces `b` by the solution.
-  void solve(std::vector<double>& values, Eigen::VectorXd& b) {
-    id_.a = values.data();
-    call(2);
-    id_.rhs = b.data();
-    call(3);
-  }
-
- private:
-  void call(int job) {
-    id_.job = job;
-    dmumps_c(&id_);
-    if (id_.infog[0] < 0)
-      throw std::runtime_error("MUMPS: error " + std::to_string(id_.infog[0]) + " in job " +
-                               std::to_string(job));
-  }
-  DMUMPS_STRUC_C id_{};
-  std::vector<int> rows_, columns_;
-};
-
-/// A rigid frictionless sphere that faces of the body (six nodes each) may not enter: a penalty holds them
-/// out.
-struct RigidSphere {
-  V centre;
-  double radius = 0, penalty = 0;  ///< [mm], [MPa/mm]
-  std::vector<std::array<int, 6>> faces;
-};
 
 /// A body some of whose displacements are prescribed. Unknowns: three displacements [mm] per node, then a
 /// pressure [MPa] per corner.
@@ -126,24 +78,29 @@ class Rubber {
     x_ = before;
     return false;
   }
-  /// Finds equilibrium with a sphere, first from `guess`, then from the state by softer penalties. False, and
-  /// nothing changed, where neither gets there. Faces are those of the first call.
-  bool settle(const RigidSphere& sphere, const Eigen::VectorXd& guess) {
+  /// The body touches rigid tools from now on, which the caller moves.
+  void touch(Contact& contact) { contact_ = &contact; }
+  /// Small strain and displacement from now on: forces by the tangent at rest. The tools' overlap is exact.
+  void linearize() { linear_ = true; }
+  /// Finds equilibrium with the tools, to `tolerance` [mm], from `guess`, or from the state by softer
+  /// penalties. False, and nothing changed, where neither gets there.
+  bool settle(const Eigen::VectorXd& guess, double tolerance) {
     const Eigen::VectorXd before = x_;
-    sphere_ = sphere;
     x_ = guess;
-    if (settle_once(1e-7, 12)) return true;
+    if (settle_once(tolerance, 25)) return true;
     x_ = before;
+    if (contact_->rubs()) return false;  // a softer penalty would let go of what sticks
     for (double share : {0.03, 0.2, 1.0}) {
-      sphere_.penalty = share * sphere.penalty;
-      if (settle_once(share < 1 ? 1e-3 : 1e-7, 25)) continue;
+      contact_->share = share;
+      if (settle_once(share < 1 ? 1e4 * tolerance : tolerance, 25)) continue;
+      contact_->share = 1;
       x_ = before;
       return false;
     }
     return true;
   }
-  /// Force of the sphere on the body [N], as of the last step.
-  const V& sphere_force() const { return sphere_force_; }
+  /// Newton's steps, so far.
+  int newton_steps() const { return newton_steps_; }
   /// Back to a state that was one of equilibrium.
   void reset(const Eigen::VectorXd& state) { x_ = state; }
   /// The least J at any integration point of the state.
@@ -245,6 +202,7 @@ class Rubber {
   // displacement, or -1 where there is none to be had.
   double newton_step(const Eigen::VectorXd* increment) {
     Eigen::VectorXd b;
+    ++newton_steps_;
     if (!assemble(increment, b) || !std::isfinite(b.norm())) return -1;
     if (system_ == nullptr) system_ = std::make_unique<SymmetricEquations>(equations_, rows_, columns_);
     system_->solve(values_, b);
@@ -256,58 +214,42 @@ class Rubber {
     }
     return largest;
   }
-  // Newton's method, to steps of less than `tolerance` of the radius.
+  // Newton's method, to steps of less than `tolerance`; at first as if all stuck, lest points slip both ways
+  // in turn. A step that goes too far by the forces along it, or turns an element inside out, is shortened.
   bool settle_once(double tolerance, int most) {
+    const Eigen::Index displacements = 3 * static_cast<Eigen::Index>(mesh_.nodes.size());
+    Eigen::VectorXd b, step = Eigen::VectorXd::Zero(x_.size());
+    bool held = contact_->holds = contact_->friction > 0;
+    if (!assemble(nullptr, b)) return contact_->holds = false;
     for (int iteration = 0; iteration < most; ++iteration) {
-      const double largest = newton_step(nullptr);
-      if (largest < 0) return false;
-      Eigen::VectorXd b;
-      if (largest < tolerance * sphere_.radius) return assemble(nullptr, b);
+      const Eigen::VectorXd before = x_, residual = b;
+      ++newton_steps_;
+      if (system_ == nullptr) system_ = std::make_unique<SymmetricEquations>(equations_, rows_, columns_);
+      system_->solve(values_, b);
+      if (!std::isfinite(b.norm())) return contact_->holds = false;
+      for (Eigen::Index i = 0; i < x_.size(); ++i) step[i] = equation_[i] >= 0 ? b[equation_[i]] : 0;
+      const auto along = [&](const Eigen::VectorXd& force) {
+        double sum = 0;
+        for (Eigen::Index i = 0; i < displacements; ++i)
+          if (equation_[i] >= 0) sum += force[equation_[i]] * step[i];
+        return sum;
+      };
+      const double start = along(residual);
+      contact_->holds = false;
+      double share = 1;
+      for (int cut = 0;; ++cut) {
+        x_ = before + share * step;
+        const bool whole = assemble(nullptr, b);
+        if (cut == 6 && !whole) return false;
+        const double end = whole ? along(b) : 0;
+        if (whole && (held || cut == 6 || end > -0.5 * std::abs(start))) break;
+        share *= whole ? (std::max)(0.1, std::abs(start) / (std::abs(start) - end)) : 0.5;
+      }
+      const double largest = share * step.head(displacements).cwiseAbs().maxCoeff();
+      if (largest < tolerance && !held) return true;
+      held = false;
     }
     return false;
-  }
-  // The sphere's penalty over undeformed faces, seven points each, exact to the fifth degree.
-  void add_sphere(Eigen::VectorXd& b, bool first) {
-    constexpr double r15 = 3.872983346207417, a[2] = {(6 - r15) / 21, (6 + r15) / 21},
-                     wa[2] = {(155 - r15) / 1200, (155 + r15) / 1200};
-    std::array<std::array<double, 4>, 7> points{{{1. / 3, 1. / 3, 1. / 3, 0.225}}};
-    for (int k = 0; k < 2; ++k)
-      for (int i = 0; i < 3; ++i) {
-        points[1 + 3 * k + i] = {a[k], a[k], a[k], wa[k]};
-        points[1 + 3 * k + i][i] = 1 - 2 * a[k];
-      }
-    sphere_force_.setZero();
-    for (const auto& face : sphere_.faces) {
-      Eigen::Matrix<double, 18, 18> k = Eigen::Matrix<double, 18, 18>::Zero();
-      Eigen::Matrix<double, 18, 1> r = Eigen::Matrix<double, 18, 1>::Zero();
-      for (const auto& [l0, l1, l2, weight] : points) {
-        const std::array<double, 6> shape{l0 * (2 * l0 - 1), l1 * (2 * l1 - 1), l2 * (2 * l2 - 1),
-                                          4 * l0 * l1,       4 * l1 * l2,       4 * l2 * l0},
-            by1{1 - 4 * l0, 4 * l1 - 1, 0, 4 * (l0 - l1), 4 * l2, -4 * l2},
-            by2{1 - 4 * l0, 0, 4 * l2 - 1, -4 * l1, 4 * l1, 4 * (l0 - l2)};
-        V from = -sphere_.centre, t1 = V::Zero(), t2 = V::Zero();
-        for (int i = 0; i < 6; ++i) {
-          const V& p = mesh_.nodes[face[i]];
-          from += shape[i] * (p + x_.segment<3>(3 * face[i]));
-          t1 += by1[i] * p;
-          t2 += by2[i] * p;
-        }
-        const double distance = from.norm(), inside = sphere_.radius - distance;
-        if (!(inside > 0)) continue;
-        const V n = from / distance;
-        const double w = sphere_.penalty * 0.5 * t1.cross(t2).norm() * weight;
-        sphere_force_ += w * inside * n;
-        const Eigen::Matrix3d nn = n * n.transpose(),
-                              stiffness = w * (nn - inside / distance * (Eigen::Matrix3d::Identity() - nn));
-        for (int i = 0; i < 6; ++i) {
-          r.segment<3>(3 * i) -= w * inside * shape[i] * n;
-          for (int j = 0; j < 6; ++j) k.block<3, 3>(3 * i, 3 * j) += shape[i] * shape[j] * stiffness;
-        }
-      }
-      std::array<int, 18> unknowns;
-      for (int i = 0; i < 18; ++i) unknowns[i] = 3 * face[i / 3] + i % 3;
-      add(unknowns, r, k, first, b);
-    }
   }
   // An element's part of the equations.
   template <class Unknowns, class Vector, class Matrix>
@@ -319,9 +261,17 @@ class Rubber {
       for (int j = 0; j <= i; ++j) {
         const int column = equation_[unknowns[j]];
         if (column < 0) continue;
-        values_.push_back(k(i, j));
-        if (first)
-          rows_.push_back((std::max)(row, column) + 1), columns_.push_back((std::min)(row, column) + 1);
+        if (first) {
+          const auto [low, high] = std::minmax(row, column);
+          const auto [at, fresh] = entry_.try_emplace(std::pair{high, low}, static_cast<int>(rows_.size()));
+          slots_.push_back(at->second);
+          if (fresh) {
+            rows_.push_back(high + 1);
+            columns_.push_back(low + 1);
+            values_.push_back(0);
+          }
+        }
+        values_[slots_[next_++]] += k(i, j);
       }
     }
   }
@@ -331,12 +281,21 @@ class Rubber {
     const bool first = rows_.empty();
     b = Eigen::VectorXd::Zero(equations_);
     force_ = Eigen::VectorXd::Zero(x_.size());
-    values_.clear();
+    values_.assign(rows_.size(), 0);
+    next_ = 0;
     least_J_ = 1;
+    const Eigen::VectorXd rest = Eigen::VectorXd::Zero(x_.size());
     for (std::size_t e = 0; e < unknowns_.size(); ++e) {
       Vector34 r;
       Matrix34 k;
-      if (!element(x_, e, r, k)) return false;
+      if (linear_) {
+        element(rest, e, r, k);
+        Vector34 x;
+        for (int i = 0; i < 34; ++i) x[i] = x_[unknowns_[e][i]];
+        r = k * x;
+      } else if (!element(x_, e, r, k)) {
+        return false;
+      }
       for (int i = 0; i < 34; ++i) force_[unknowns_[e][i]] += r[i];
       if (increment != nullptr)
         for (int i = 0; i < 30; ++i)
@@ -344,7 +303,10 @@ class Rubber {
             r += k.col(i) * (*increment)[unknowns_[e][i]];
       add(unknowns_[e], r, k, first, b);
     }
-    add_sphere(b, first);
+    if (contact_ != nullptr)
+      contact_->assemble(mesh_.nodes, x_, [&](const auto& unknowns, const auto& r, const auto& k) {
+        add(unknowns, r, k, first, b);
+      });
     return true;
   }
   // Forces by the tangent at `state` for what x_ is more.
@@ -365,14 +327,17 @@ class Rubber {
   std::vector<std::array<int, 34>> unknowns_;
   std::vector<std::array<Point, points_>> data_;
   std::vector<int> equation_;  // of each unknown; -1: prescribed
-  int equations_ = 0;
+  int equations_ = 0, newton_steps_ = 0;
   Eigen::VectorXd x_, force_;
   std::vector<int> rows_, columns_;
   std::vector<double> values_;
+  std::map<std::pair<int, int>, int> entry_;
+  std::vector<int> slots_;  // where the elements' entries go, in their order
+  std::size_t next_ = 0;
   std::unique_ptr<SymmetricEquations> system_;
   double least_J_ = 1;
-  RigidSphere sphere_;
-  V sphere_force_ = V::Zero();
+  Contact* contact_ = nullptr;
+  bool linear_ = false;
 };
 
 }  // namespace bench
