@@ -101,6 +101,25 @@ TEST_CASE("a cube pressed flat has the force of its face with 1, 4 and 16 square
   }
 }
 
+TEST_CASE("a cube pressed flat is pushed at the middle of its face, and turned about its centre of mass") {
+  const TriangleMesh<double> cube(Box<double>({.half = V::Constant(0.005)}).mesh(98));
+  const V centre_of_mass(3e-3, 1e-3, -2e-3);
+  Pressed<Flat> solver(
+      {.object = {},
+       .tool = ToolPoints<double>(cube, {.contact_area = 1e-4, .centre_of_mass = centre_of_mass}),
+       .force = LinearForce<double>({.k = k}),
+       .friction = {}});
+  for (const double depth : {0.001, 0.008}) {
+    Pose<double> X = pressed(cube, depth, 0.3, V::UnitY());
+    X.translation += V(0.01, 0, -0.02);
+    const V face(0.01, -depth, -0.02), force(0, k * depth, 0);
+    const Wrench<double> felt = solver.tick(X).wrench;
+    // Rounding of sums of 98 points, 2 cm from the origin.
+    CHECK((felt.torque - (face - X * centre_of_mass).cross(force)).norm() < 1e-13 * force.norm());
+    CHECK((solver.contacts()[0].centre - face).norm() < 1e-13);
+  }
+}
+
 TEST_CASE("force and torque of tilted tools are those of a fine mesh, from 50 points on") {
   struct Scene {
     const char* name;
