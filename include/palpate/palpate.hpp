@@ -72,8 +72,14 @@
 #include <palpate/luo_xiao/beam_skeleton.hpp>
 #include <palpate/luo_xiao/make_beam_skeleton.hpp>
 
+// resolved: contact solved at the tool's own points
+#include <palpate/resolved/contact_points.hpp>
+#include <palpate/resolved/elastic_contact.hpp>
+#include <palpate/resolved/contact_samples.hpp>
+
 // solver: one tick
 #include <palpate/solver/contact_solver.hpp>
+#include <palpate/solver/make_solver.hpp>
 #include <palpate/solver/aliases.hpp>
 #include <palpate/solver/stiffness.hpp>
 #include <palpate/solver/largest_stiffness.hpp>

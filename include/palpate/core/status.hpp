@@ -21,6 +21,7 @@ enum class Status : std::uint32_t {
   held_back = 1u << 8,  ///< the tool would have gone through: it is kept on the side it came from (SweptPose)
   stress_bounded = 1u << 9,  ///< other regions' beams would have pulled: their stress force is bounded
   coarsened = 1u << 10,      ///< the tool has fewer points than it was given, to keep a budget of time
+  unconverged = 1u << 11,    ///< a resolved contact's conditions are not met to ten times their tolerance
 };
 
 [[nodiscard]] constexpr Status operator|(Status a, Status b) noexcept {

@@ -22,6 +22,7 @@
 #include <palpate/solver/tick_result.hpp>
 #include <palpate/solver/rate_window.hpp>
 #include <palpate/solver/detail/gather.hpp>
+#include <palpate/solver/detail/resolve.hpp>
 #include <palpate/solver/detail/stress_forces.hpp>
 #include <palpate/solver/detail/tick_memory.hpp>
 // clang-format on
@@ -65,7 +66,8 @@ template <ContactSurface Object, ForceModel Force,
           RegionForceCoupling<typename Object::Scalar> Coupling = DefaultCoupling<Deformation>>
   requires std::same_as<typename Object::Scalar, typename Force::Scalar> &&
            std::same_as<typename Object::Scalar, typename Friction::Scalar> &&
-           std::same_as<typename Object::Scalar, typename Deformation::Scalar>
+           std::same_as<typename Object::Scalar, typename Deformation::Scalar> &&
+           (ElasticForceModel<Force> == ResolvedTopology<Contacts>)
 class ContactSolver {
  public:
   using Scalar = typename Object::Scalar;
@@ -75,8 +77,9 @@ class ContactSolver {
   static constexpr bool has_friction = Friction::active;
   static constexpr bool is_rate_dependent = RateDependentForceLaw<Force>;
   static constexpr bool has_memory = StatefulForceLaw<Force>;
+  static constexpr bool is_resolved = ResolvedTopology<Contacts>;
   static constexpr bool resists_twist =
-      detail::Twists<Friction, Contacts, std::same_as<Acting, AtContact>>::value;
+      !is_resolved && detail::Twists<Friction, Contacts, std::same_as<Acting, AtContact>>::value;
 
   /// What a solver is made of. Each part has checked itself when it was made.
   struct Parts {
@@ -90,15 +93,19 @@ class ContactSolver {
     PALPATE_NO_UNIQUE_ADDRESS detail::Present<RateWindow<S>, 3, is_rate_dependent> rate{};
   };
 
+  using Gather = typename detail::CollectorOf<Contacts, S, Coupling, Force, has_friction>::type;
+
   /// What a tick leaves for the next one: a value, made by initial_state(). A copy goes on from the same
   /// tick. Copies among the states of one solver take no heap; with one region its size is fixed.
-  class State : private detail::TickMemory<S, typename Collector<Contacts, S, Coupling>::State, Force,
-                                           has_friction, resists_twist, max_regions> {
+  class State : private detail::TickMemory<S, typename Gather::State, Force, has_friction && !is_resolved,
+                                           resists_twist, max_regions> {
    public:
     /// The regions of the last tick: values to hand over, record or draw.
     [[nodiscard]] std::span<const ContactState<S>> contacts() const noexcept {
       return {this->contacts_.begin(), this->contacts_.size()};
     }
+    using State::TickMemory::points;    ///< of a resolved contact: forces at the tool's points
+    using State::TickMemory::residual;  ///< what its conditions lack after the last tick
     /// Object or laws are others now: the next tick is worked out, though the pose is the last one's.
     void refresh() noexcept { this->last_.ticks = (std::min)(this->last_.ticks, 1); }
     /// Forgets all contact, as after a calibration of the device, and what laws with memory remember.
@@ -118,7 +125,7 @@ class ContactSolver {
         deformation_(std::move(parts.deformation)),
         coupling_(std::move(parts.coupling)),
         rate_(parts.rate),
-        collector_(parts.contacts, tool_, coupling_),
+        collector_(parts.contacts, tool_, detail::for_collector<Gather>(force_, coupling_)),
         state_(initial_state()) {
     if constexpr (is_rate_dependent) detail::check(rate_);
   }
@@ -222,7 +229,7 @@ class ContactSolver {
   [[nodiscard]] const Deformation& deformation() const noexcept { return deformation_; }
 
  private:
-  using Sum = typename Collector<Contacts, S, Coupling>::template Sum<Force>;
+  using Sum = typename Gather::template Sum<Force>;
   static constexpr bool is_relieved = std::derived_from<Sum, detail::RelievedSum<S>>;
 
   TickResult<S> step(const Pose<S>& X, [[maybe_unused]] S dt, Status status, State& state) const noexcept {
@@ -256,16 +263,26 @@ class ContactSolver {
 
   TickResult<S> in_contact(const Pose<S>& X, [[maybe_unused]] S dt, State& state) const noexcept {
     state.contacts_.clear();
+    TickResult<S> result;
+    if constexpr (is_resolved)
+      collector_.resolve(object_, tool_, force_, friction_, X, Acting{}, state.regions_, state.contacts_,
+                         result);
+    else
+      add_regions(X, dt, state, result);
+    return result;
+  }
+
+  void add_regions(const Pose<S>& X, [[maybe_unused]] S dt, State& state,
+                   TickResult<S>& result) const noexcept {
     if constexpr (is_rate_dependent) state.poses_.push(X, dt);
     detail::TickSums<Sum, max_regions> found;
-    TickResult<S> result;
     if constexpr (has_memory) {
       result.status = detail::collect_and_remember(collector_, object_, tool_, force_, X, dt, state.regions_,
                                                    state.law_, found);
     } else {
       result.status = collector_.collect(object_, tool_, force_, X, state.regions_, found);
     }
-    if (!has(result.status, Status::contact)) return result;
+    if (!has(result.status, Status::contact)) return;
     auto& sums = found.list();
     if constexpr (has_friction && ClusteredTopology<Contacts>) {
       if (state.regions_.changed())
@@ -276,7 +293,6 @@ class ContactSolver {
     }
     if constexpr (detail::PassesForces<Coupling>)
       detail::pass_on<Acting>(coupling_, Vec3<S>(X * centre_of_mass()), state.contacts_, result);
-    return result;
   }
 
   /// One region: equivalent contact, rate term, friction; adds its force to the wrench.
@@ -360,7 +376,7 @@ class ContactSolver {
   PALPATE_NO_UNIQUE_ADDRESS Deformation deformation_;
   PALPATE_NO_UNIQUE_ADDRESS Coupling coupling_;
   PALPATE_NO_UNIQUE_ADDRESS detail::Present<RateWindow<S>, 3, is_rate_dependent> rate_;
-  Collector<Contacts, S, Coupling> collector_;
+  Gather collector_;
   State state_;
 };
 
@@ -371,29 +387,14 @@ template <ContactSurface Object, ForceModel Force, FrictionLaw Friction, Topolog
           RegionForceCoupling<typename Object::Scalar> Coupling>
   requires std::same_as<typename Object::Scalar, typename Force::Scalar> &&
            std::same_as<typename Object::Scalar, typename Friction::Scalar> &&
-           std::same_as<typename Object::Scalar, typename Deformation::Scalar>
-TickResult<typename Object::Scalar>
-ContactSolver<Object, Force, Friction, Contacts, Deformation, Acting, Coupling>::contact_at(
-    const Pose<typename Object::Scalar>& X, typename Object::Scalar dt, State& state) const noexcept {
+           std::same_as<typename Object::Scalar, typename Deformation::Scalar> &&
+           (ElasticForceModel<Force> == ResolvedTopology<Contacts>)
+TickResult<typename Object::Scalar> ContactSolver<Object, Force, Friction, Contacts, Deformation, Acting,
+                                                  Coupling>::contact_at(const Pose<typename Object::Scalar>&
+                                                                            X,
+                                                                        typename Object::Scalar dt,
+                                                                        State& state) const noexcept {
   return in_contact(X, dt, state);
-}
-
-/// A solver from its parts in the order of their roles; types are deduced. A `PointTool` has one contact; of
-/// `ToolPoints` all are one region where no topology is given.
-template <ContactSurface Object, class Tool, ForceModel Force,
-          FrictionLaw Friction = Frictionless<typename Object::Scalar>,
-          Topology Contacts = detail::TopologyOf<Tool>,
-          DeformationModel Deformation = NoDeformation<typename Object::Scalar>>
-[[nodiscard]] ContactSolver<Object, Force, Friction, Contacts, Deformation> make_solver(
-    Object object, Tool tool, Force force, Friction friction = {}, Contacts contacts = {},
-    Deformation deformation = {}) {
-  return ContactSolver<Object, Force, Friction, Contacts, Deformation>(
-      {.object = std::move(object),
-       .tool = std::move(tool),
-       .force = std::move(force),
-       .friction = std::move(friction),
-       .contacts = std::move(contacts),
-       .deformation = std::move(deformation)});
 }
 
 }  // namespace palpate

@@ -47,7 +47,19 @@ struct LawOf<M> {
 };
 }  // namespace detail
 
-/// What the solver takes: one law for the whole object, or a map.
+/// A force model that asks an elastic body at the tool's points (resolved/elastic_contact.hpp).
+template <class F>
+concept ElasticForceModel = requires { typename F::Compliance; };
+
+namespace detail {
+template <ElasticForceModel F>
+struct LawOf<F> {
+  using Law = LinearForce<double>;
+  using Map = NoMap;
+};
+}  // namespace detail
+
+/// What the solver takes: one law for the whole object, a map, or an elastic body.
 template <class F>
 concept ForceModel = ForceLaw<typename detail::LawOf<F>::Law> && ForceMap<typename detail::LawOf<F>::Map>;
 

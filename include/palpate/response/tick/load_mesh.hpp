@@ -92,13 +92,26 @@ class LoadMesh {
     if (at.distance2 > 0) follow_normals(x, at.position, position);
     return position;
   }
+  /// The same, begun at a triangle close by: a tenth of the time, and equal to rounding near the surface.
+  [[nodiscard]] LoadPosition locate(const Vec3<double>& x, std::uint32_t triangle) const noexcept {
+    const auto& t = triangles_[triangle];
+    LoadPosition position{triangle, t, Vec3<double>::Constant(1. / 3), 0};
+    if (!follow_normals(x, position_of(position), position)) return locate(x);
+    position.distance2 = (x - position_of(position)).squaredNorm();
+    return position;
+  }
 
  private:
   static constexpr int cells = 16;  // along each axis
 
-  // From the nearest position over the triangles' prisms, which share their sides. Leaves `position` alone if
-  // none contains x.
-  void follow_normals(const Vec3<double>& x, const Vec3<double>& nearest,
+  [[nodiscard]] Vec3<double> position_of(const LoadPosition& p) const noexcept {
+    Vec3<double> x = Vec3<double>::Zero();
+    for (std::size_t c = 0; c < 3; ++c) x += p.weight[Eigen::Index(c)] * nodes_[p.node[c]].source;
+    return x;
+  }
+  // From a position nearby over the triangles' prisms, which share their sides. Leaves `position` alone and
+  // returns false if none contains x.
+  bool follow_normals(const Vec3<double>& x, const Vec3<double>& nearest,
                       LoadPosition& position) const noexcept {
     std::uint32_t t = position.triangle;
     Vec3<double> n = Vec3<double>::Zero();
@@ -120,24 +133,25 @@ class LoadMesh {
       for (int newton = 0; newton < 4; ++newton) {  // d for which the offset triangle's plane contains x
         const double slope = (dq.cross(er) + eq.cross(dr)).dot(to) - area.dot(p.normal),
                      height = area.dot(to);
-        if (!(slope < 0)) return;
+        if (!(slope < 0)) return false;
         d -= height / slope;
         offset();
         // Newton's method leaves an error of the square of its last step.
         if (height * height < 1e-10 * slope * slope * eq.squaredNorm()) break;
       }
       const double a2 = area.squaredNorm();
-      if (!(a2 > 0)) return;
+      if (!(a2 > 0)) return false;
       Vec3<double> l(0, to.cross(er).dot(area) / a2, eq.cross(to).dot(area) / a2);
       l[0] = 1 - l[1] - l[2];
       Eigen::Index least = 0;
       if (l.minCoeff(&least) > -1e-9) {
         l = l.cwiseMax(0.0);
         position = {t, triangles_[t], l / l.sum(), position.distance2};
-        return;
+        return true;
       }
       t = across_[t][static_cast<std::size_t>(least)];
     }
+    return false;
   }
 
   // Everything that follows from nodes and triangles.

@@ -58,6 +58,17 @@ struct TickMemory {
     law_ = {};
   }
 
+  [[nodiscard]] auto points() const noexcept
+    requires requires(const Regions& r) { r.residual(); }
+  {
+    return regions_.contacts();
+  }
+  [[nodiscard]] const auto& residual() const noexcept
+    requires requires(const Regions& r) { r.residual(); }
+  {
+    return regions_.residual();
+  }
+
   Regions regions_;
   LastTick<S> last_{};
   PALPATE_NO_UNIQUE_ADDRESS Present<std::array<FrictionMemory<S, twists>, N>, 0, has_friction> memory_{};

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file Topology of a resolved contact: every touching point of the tool carries a force of its own.
+
+#include <palpate/contact/topology.hpp>
+#include <palpate/core/vector.hpp>
+#include <palpate/detection/tool_points.hpp>
+
+#include <cstdint>
+
+namespace palpate {
+
+/// Up to N points beneath the surface, of which half carry load when a ball is pressed; the tool is made of
+/// `contact_samples`. Several contacts, edges, tilt and rolling need no rule of their own. With more than N
+/// the surplus is left out (`Status::point_overflow`): the tool then is too fine.
+template <std::size_t N>
+struct ContactPoints {
+  static_assert(N >= 1 && N <= 1024, "palpate::ContactPoints<N>: 1 <= N <= 1024");
+  static constexpr std::size_t max_regions = 1;
+  static constexpr std::size_t max_points = N;
+  using Sharing = AreaSharing;
+  template <Real S>
+  using Tool = ToolPoints<S>;
+};
+
+namespace detail {
+template <std::size_t N>
+inline constexpr bool is_shipped_topology<ContactPoints<N>> = true;
+}  // namespace detail
+
+template <class T>
+concept ResolvedTopology = Topology<T> && requires { T::max_points; };
+
+/// What a point of the tool feels.
+template <Real S>
+struct PointContact {
+  std::uint32_t point;  ///< of the tool, ToolPoints::point(point)
+  bool sticks;          ///< false where it slips or there is no friction
+  Vec3<S> position;     ///< object coordinates [m]
+  Vec3<S> normal;       ///< of the body, outward
+  Vec3<S> force;        ///< on the tool [N]
+  S pressure;           ///< normal force over the point's cell [Pa]
+  S depth;              ///< beneath the undeformed surface [m]
+};
+
+}  // namespace palpate

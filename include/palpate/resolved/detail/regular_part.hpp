@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file The regular part w of a response field between the points of a contact: gathered to the nodes
+/// beneath them, a small matrix, and back. Per tick.
+
+#include <palpate/core/fixed_vector.hpp>
+#include <palpate/resolved/detail/point_system.hpp>
+#include <palpate/response/response_field.hpp>
+
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+namespace palpate::detail {
+
+/// w_kl between nodes is read from the influence functions when a node comes in, and kept.
+class RegularPart {
+ public:
+  static constexpr bool active = true;
+  /// Nodes beneath a contact; points beyond them have no regular part.
+  static constexpr std::size_t max_nodes = 128;
+
+  template <class Body>
+  RegularPart(const Body& body, std::size_t capacity)
+      : slot_of_(body.field().load_mesh().nodes().size(), none),
+        node_(max_nodes, 0),
+        tick_of_(max_nodes, 0),
+        index_(max_nodes, 0),
+        kept_(max_nodes * max_nodes, Mat3<float>::Zero()) {
+    weights_.resize(capacity);
+    used_.reserve(max_nodes);
+    was_used_.reserve(max_nodes);
+    const std::size_t padded = AlignedList<float>::padded(3 * max_nodes);
+    load_.resize(padded);
+    u_.resize(padded);
+    matrix_.resize(padded * 3 * max_nodes);
+  }
+
+  void clear() noexcept {
+    ++tick_;
+    size_ = 0;
+    was_used_.swap(used_);
+    used_.clear();
+  }
+  static constexpr std::uint32_t anywhere = ~0u;
+  /// The next point, at x in object coordinates. `triangle` of the load mesh: where it was, or anywhere; then
+  /// where it is.
+  template <class Body>
+  void add(const Body& body, const Vec3<double>& x, std::uint32_t& triangle) noexcept {
+    place(body.field(), x, triangle, weights_[size_++], true);
+  }
+  /// The matrix between the nodes in use.
+  void build() noexcept {
+    stride_ = padded<V>(3 * used_.size());
+    for (std::size_t i = 3 * used_.size(); i < stride_; ++i) load_[i] = 0;
+    if (used_ == was_used_ && !changed_) return;
+    changed_ = false;
+    for (std::size_t l = 0; l < used_.size(); ++l)
+      for (std::size_t c = 0; c < 3; ++c) {
+        float* const column = &matrix_[(3 * l + c) * stride_];
+        for (std::size_t k = 0; k < used_.size(); ++k) {
+          const Mat3<float>& w = kept(used_[k], used_[l]);
+          for (std::size_t r = 0; r < 3; ++r) column[3 * k + r] = w(Eigen::Index(r), Eigen::Index(c));
+        }
+        for (std::size_t i = 3 * used_.size(); i < stride_; ++i) column[i] = 0;
+      }
+  }
+
+  /// y += w along the normals of forces q along them.
+  void add_normal(const PointSystem& system, const float* q, float* y) noexcept {
+    gather_pressures(system, q);
+    for (std::size_t i = 0; i < size_; ++i) y[i] += system.axes(i).col(0).dot(at(weights_[i]));
+  }
+  void add_normal_by_tractions(const PointSystem& system, const float* s, const float* t, float* y) noexcept {
+    gather_tractions(system, s, t);
+    for (std::size_t i = 0; i < size_; ++i) y[i] += system.axes(i).col(0).dot(at(weights_[i]));
+  }
+  void add_tangential(const PointSystem& system, const float* s, const float* t, float* us,
+                      float* ut) noexcept {
+    gather_tractions(system, s, t);
+    scatter(system, us, ut);
+  }
+  void add_tangential_by_pressures(const PointSystem& system, const float* q, float* us, float* ut) noexcept {
+    gather_pressures(system, q);
+    scatter(system, us, ut);
+  }
+  /// w along m at a further point, of the pressures of gather_pressures().
+  void gather_pressures(const PointSystem& system, const float* q) noexcept {
+    gather([&](std::size_t i) { return Vec3<float>(q[i] * system.axes(i).col(0)); });
+  }
+  void gather_tractions(const PointSystem& system, const float* s, const float* t) noexcept {
+    gather([&](std::size_t i) {
+      return Vec3<float>(s[i] * system.axes(i).col(1) + t[i] * system.axes(i).col(2));
+    });
+  }
+  template <class Body>
+  [[nodiscard]] float normal_at(const Body& body, const Vec3<double>& x, std::uint32_t& triangle,
+                                const Vec3<float>& m) noexcept {
+    Weights weights;
+    place(body.field(), x, triangle, weights, false);
+    return m.dot(at(weights));
+  }
+
+ private:
+  using V = PointSystem::V;
+  static constexpr std::uint16_t none = 0xffff;
+  struct Weight {
+    std::uint16_t node;  // among those in use
+    float value;
+  };
+  using Weights = FixedVector<Weight, 12>;
+
+  [[nodiscard]] Mat3<float>& kept(std::size_t k, std::size_t l) noexcept { return kept_[k * max_nodes + l]; }
+
+  // Weights at the solved nodes around x. Nodes that are not in use come in if `take_in`.
+  void place(const ResponseField& field, const Vec3<double>& x, std::uint32_t& triangle, Weights& weights,
+             bool take_in) noexcept {
+    weights.clear();
+    const LoadMesh& mesh = field.load_mesh();
+    const LoadPosition position = triangle == anywhere ? mesh.locate(x) : mesh.locate(x, triangle);
+    triangle = position.triangle;
+    double size = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+      size += position.weight[Eigen::Index(i)] * mesh.nodes()[position.node[i]].size;
+    // Far from the surface the nearest position may jump, so w fades: to a half at one edge's length.
+    const double far2 = position.distance2 / (size * size), fade = 1 / (1 + far2 * far2);
+    const auto put = [&](std::uint32_t node, double weight) {
+      const std::uint16_t index = take_in ? use(field, node) : in_use(node);
+      if (index == none || weights.full()) return;
+      weights.push_back({index, static_cast<float>(weight * fade)});
+    };
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double weight = position.weight[Eigen::Index(i)];
+      if (!(weight > 0)) continue;
+      if (position.node[i] < mesh.solved())
+        put(position.node[i], weight);
+      else
+        for (const LoadMesh::Share& s : mesh.shares(position.node[i])) put(s.node, weight * double(s.weight));
+    }
+  }
+  // The node's index among those in use, or none.
+  [[nodiscard]] std::uint16_t in_use(std::uint32_t node) const noexcept {
+    const std::uint16_t slot = slot_of_[node];
+    return slot != none && tick_of_[slot] == tick_ ? index_[slot] : none;
+  }
+  std::uint16_t use(const ResponseField& field, std::uint32_t node) noexcept {
+    std::uint16_t slot = slot_of_[node];
+    if (slot == none) {
+      if (used_.size() == max_nodes) return none;
+      slot = 0;  // the one that was in use longest ago
+      for (std::uint16_t k = 1; k < max_nodes; ++k)
+        if (tick_of_[k] < tick_of_[slot]) slot = k;
+      if (tick_of_[slot] != 0) slot_of_[node_[slot]] = none;
+      slot_of_[node] = slot;
+      node_[slot] = node;
+      tick_of_[slot] = tick_ - 1;
+      read(field, slot);
+    }
+    if (tick_of_[slot] != tick_) {
+      tick_of_[slot] = tick_;
+      index_[slot] = static_cast<std::uint16_t>(used_.size());
+      used_.push_back(slot);
+    }
+    return index_[slot];
+  }
+  // 4 pi mu w between a node and all that are kept: by reciprocity the mean of both ways.
+  void read(const ResponseField& field, std::size_t k) noexcept {
+    changed_ = true;
+    for (std::size_t l = 0; l < max_nodes; ++l) {
+      if (tick_of_[l] == 0) continue;
+      Mat3<double> kl, lk;
+      for (std::size_t c = 0; c < 3; ++c) {
+        kl.col(Eigen::Index(c)) = field.at(node_[k], node_[l], c);
+        lk.col(Eigen::Index(c)) = field.at(node_[l], node_[k], c);
+      }
+      const Mat3<float> w = (2 * std::numbers::pi * (kl + lk.transpose())).cast<float>();
+      kept(k, l) = w;
+      kept(l, k) = w.transpose();
+    }
+  }
+
+  // The nodes' loads, of load(i) at the points, and their displacements.
+  template <class Load>
+  void gather(const Load& load) noexcept {
+    float *const f = load_.data(), *const u = u_.data();
+    for (std::size_t i = 0; i < stride_; i += V::size()) store(f + i, V{}), store(u + i, V{});
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Vec3<float> P = load(i);
+      if (P == Vec3<float>::Zero()) continue;
+      for (const Weight& w : weights_[i])
+        for (std::size_t r = 0; r < 3; ++r) f[3 * w.node + r] += w.value * P[Eigen::Index(r)];
+    }
+    for (std::size_t j = 0; j < 3 * used_.size(); ++j)
+      for (std::size_t i = 0; i < stride_; i += V::size())
+        store(u + i, V(u + i) + f[j] * V(&matrix_[j * stride_ + i]));
+  }
+  [[nodiscard]] Vec3<float> at(const Weights& weights) const noexcept {
+    Vec3<float> sum = Vec3<float>::Zero();
+    for (const Weight& w : weights)
+      sum += w.value * Vec3<float>(u_[3 * w.node], u_[3 * w.node + 1], u_[3 * w.node + 2]);
+    return sum;
+  }
+  void scatter(const PointSystem& system, float* us, float* ut) const noexcept {
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Vec3<float> w = at(weights_[i]);
+      us[i] += system.axes(i).col(1).dot(w);
+      ut[i] += system.axes(i).col(2).dot(w);
+    }
+  }
+
+  std::vector<std::uint16_t> slot_of_;  // of a load mesh's node, or none
+  std::vector<std::uint32_t> node_;     // of a slot
+  std::vector<std::uint32_t> tick_of_;  // when a slot was in use last; 0: never
+  std::vector<std::uint16_t> index_;    // of a slot, among those in use
+  std::vector<Mat3<float>> kept_;       // between slots
+  std::vector<Weights> weights_;        // of the points
+  std::vector<std::uint16_t> used_, was_used_;
+  AlignedList<float> load_, u_, matrix_;  // of the nodes in use; the matrix by column
+  std::size_t size_ = 0, stride_ = 0;
+  std::uint32_t tick_ = 2;
+  bool changed_ = true;
+};
+
+}  // namespace palpate::detail

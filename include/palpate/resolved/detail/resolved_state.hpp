@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file A tick of a resolved contact: from touching points to forces at them.
+
+#include <palpate/core/absent.hpp>
+#include <palpate/core/pose.hpp>
+#include <palpate/detection/tool_points.hpp>
+#include <palpate/resolved/contact_points.hpp>
+#include <palpate/resolved/detail/convex_problem.hpp>
+#include <palpate/resolved/detail/point_system.hpp>
+#include <palpate/resolved/elastic_contact.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace palpate::detail {
+
+/// What a tick leaves for the next: loads at the points, and where those that stick hold the surface.
+template <Real S, ContactCompliance Compliance, bool has_friction_>
+class ResolvedState {
+ public:
+  static constexpr bool has_friction = has_friction_;
+  using Force = ElasticContact<S, Compliance>;
+
+  ResolvedState(const Compliance& body, std::size_t tool_points, std::size_t capacity)
+      : points_(tool_points), system_(capacity, has_friction), regular_(regular_part(body, capacity)) {
+    const std::size_t padded = AlignedList<float>::padded(capacity);
+    pressure_.resize(padded);
+    if constexpr (has_friction) traction_.resize(padded);
+    touching_.reserve(capacity);
+    inside_.reserve(capacity);
+    contacts_.reserve(capacity);
+  }
+
+  void reset() noexcept {
+    contacts_.clear();
+    tick_ += 2;  // no point has touched in the tick before
+    slides_ = false;
+  }
+  [[nodiscard]] bool has_contact() const noexcept { return !contacts_.empty(); }
+  [[nodiscard]] std::span<const PointContact<S>> contacts() const noexcept { return contacts_; }
+  [[nodiscard]] const Residual& residual() const noexcept { return residual_; }
+  [[nodiscard]] bool slides() const noexcept { return slides_; }
+
+  void begin_tick() noexcept {
+    ++tick_;
+    touching_.clear();
+  }
+  /// Tool point i, at x in object coordinates, is `depth` in the body, whose inward normal is m. False where
+  /// there is no place left.
+  bool touch(std::uint32_t i, const Vec3<S>& x, S depth, const Vec3<S>& m) noexcept {
+    if (touching_.size() == touching_.capacity()) return false;
+    touching_.push_back({i, x, m.template cast<float>(), static_cast<float>(depth)});
+    Point& p = points_[i];
+    if (p.tick + 1 != tick_) p = {};
+    p.tick = tick_;
+    return true;
+  }
+
+  /// Solves for the loads with the tool at X.
+  template <class Friction>
+  void solve(const Force& force, const Friction& friction, const ToolPoints<S>& tool,
+             const Pose<S>& X) noexcept {
+    contacts_.clear();
+    residual_ = {};
+    const Pose<S> before = std::exchange(pose_, X);
+    if (touching_.empty()) {
+      slides_ = false;
+      return;
+    }
+    float deepest = 0, size2 = 0;
+    for (const Touching& c : touching_) {
+      deepest = (std::max)(deepest, c.depth);
+      size2 += c.depth * c.depth;
+    }
+    const float tolerance = static_cast<float>(force.params().tolerance) * std::sqrt(size2);
+    if constexpr (has_friction) move_anchors(before, tool);
+    // First those that carry load or came near to it.
+    inside_.clear();
+    for (std::uint32_t c = 0; c < touching_.size(); ++c) {
+      const Point& p = points_[touching_[c].point];
+      if (p.loaded || p.sunk - touching_[c].depth < near * deepest) inside_.push_back(c);
+    }
+    for (int round = 0; round < 4; ++round) {
+      build(force, tool);
+      solve_inside(force, friction, tolerance);
+      if (!take_in(force, tool, tolerance)) break;
+    }
+    finish(force, tool);
+  }
+
+ private:
+  using RegularPart = typename RegularPartOf<Compliance>::type;
+  /// Points whose gap was less than this share of the depth are solved for at once.
+  static constexpr float near = 0.05f;
+
+  struct Point {
+    std::uint32_t tick = 0;                    // when it touched
+    bool loaded = false;                       // in that tick
+    float sunk = 0;                            // depth less what it lacks to touch [m]
+    std::uint32_t triangle = ~0u;              // of the load mesh
+    Vec3<float> load = Vec3<float>::Zero();    // P on the body [m^2]
+    Vec3<float> anchor = Vec3<float>::Zero();  // where it holds the surface [m]
+  };
+  struct Touching {
+    std::uint32_t point;
+    Vec3<S> x;
+    Vec3<float> m;
+    float depth;
+  };
+
+  [[nodiscard]] static RegularPart regular_part(const Compliance& body, std::size_t capacity) {
+    if constexpr (RegularPart::active)
+      return RegularPart(body, capacity);
+    else
+      return {};
+  }
+  [[nodiscard]] static float compressibility(const Force& force) noexcept {
+    return static_cast<float>(1 - 2 * force.compliance().nu());
+  }
+  [[nodiscard]] std::size_t size() const noexcept { return inside_.size(); }
+  [[nodiscard]] Vec3<float> relative(const Vec3<S>& x) const noexcept {
+    return (x - origin_).template cast<float>();
+  }
+  [[nodiscard]] Point& point(std::size_t i) noexcept { return points_[touching_[inside_[i]].point]; }
+
+  void build(const Force& force, const ToolPoints<S>& tool) noexcept {
+    system_.clear();
+    origin_ = touching_[0].x;
+    for (const std::uint32_t c : inside_) {
+      const Touching& at = touching_[c];
+      system_.add(relative(at.x), at.m, at.depth, static_cast<float>(tool.area(at.point)));
+    }
+    system_.build(compressibility(force));
+    if constexpr (RegularPart::active) {
+      regular_.clear();
+      for (std::size_t i = 0; i < size(); ++i)
+        regular_.add(force.compliance(),
+                     (origin_ + system_.foot(i).template cast<S>()).template cast<double>(),
+                     point(i).triangle);
+      regular_.build();
+    }
+    for (std::size_t i = 0; i < size(); ++i) {
+      const Vec3<float> P = system_.axes(i).transpose() * point(i).load;
+      pressure_.q[i] = (std::max)(P.x(), 0.f);
+      if constexpr (has_friction) traction_.s[i] = P.y(), traction_.t[i] = P.z();
+    }
+    for (std::size_t i = size(); i < system_.stride(); ++i) {
+      pressure_.q[i] = 0;
+      if constexpr (has_friction) traction_.s[i] = traction_.t[i] = 0;
+    }
+  }
+
+  template <class Friction>
+  void solve_inside(const Force& force, const Friction& friction, float tolerance) noexcept {
+    const int iterations = force.params().iterations;
+    const std::size_t n = size();
+    const auto normal = [&](const float* q, float* y) noexcept {
+      system_.normal_displacements(q, y);
+      if constexpr (RegularPart::active) regular_.add_normal(system_, q, y);
+    };
+    float mu = 0;
+    // Pressures and tractions in turns: they hardly depend on each other.
+    for (int turn = 0; turn < (has_friction ? 4 : 1); ++turn) {
+      for (std::size_t i = 0; i < n; ++i) pressure_.d[i] = system_.depth[i];
+      if constexpr (has_friction) {
+        float* const y = pressure_.y.data();
+        for (std::size_t i = 0; i < system_.stride(); ++i) y[i] = 0;
+        system_.add_normal_by_tractions(traction_.s.data(), traction_.t.data(), y);
+        if constexpr (RegularPart::active)
+          regular_.add_normal_by_tractions(system_, traction_.s.data(), traction_.t.data(), y);
+        for (std::size_t i = 0; i < n; ++i) pressure_.d[i] -= y[i];
+      }
+      const Residual pressed = solve_pressures(n, pressure_, tolerance, iterations, normal);
+      residual_.iterations += pressed.iterations;
+      residual_.relative = pressed.relative / tolerance * static_cast<float>(force.params().tolerance);
+      if constexpr (has_friction) {
+        if (turn > 0 && pressed.iterations == 0) return;  // what tractions change is within the tolerance
+        const auto tangential = [&](const float* s, const float* t, float* us, float* ut) noexcept {
+          system_.tangential_displacements(s, t, us, ut);
+          if constexpr (RegularPart::active) regular_.add_tangential(system_, s, t, us, ut);
+        };
+        tangential(traction_.s.data(), traction_.t.data(), traction_.us.data(), traction_.ut.data());
+        system_.add_tangential_by_pressures(pressure_.q.data(), traction_.us.data(), traction_.ut.data());
+        if constexpr (RegularPart::active)
+          regular_.add_tangential_by_pressures(system_, pressure_.q.data(), traction_.us.data(),
+                                               traction_.ut.data());
+        if (turn == 0) {
+          mu = coefficient(force, friction);
+          begin_anchors();
+        }
+        for (std::size_t i = 0; i < n; ++i) traction_.limit[i] = mu * pressure_.q[i];
+        const Residual dragged = solve_tractions(n, traction_, tolerance, iterations, tangential);
+        residual_.iterations += dragged.iterations;
+        residual_.relative = (std::max)(
+            residual_.relative, dragged.relative / tolerance * static_cast<float>(force.params().tolerance));
+      }
+    }
+  }
+
+  /// Takes in points that the surface has not given way to. False where there are none.
+  bool take_in(const Force& force, const ToolPoints<S>& tool, float tolerance) noexcept {
+    const std::size_t n = size();
+    std::size_t next = 0;
+    bool more = false;
+    if constexpr (RegularPart::active) regular_.gather_pressures(system_, pressure_.q.data());
+    for (std::uint32_t c = 0; c < touching_.size(); ++c) {
+      if (next < n && inside_[next] == c) {
+        ++next;
+        continue;
+      }
+      const Touching& at = touching_[c];
+      Point& p = points_[at.point];
+      // Gaps change little in a tick: each is looked at in every eighth.
+      if ((tick_ + at.point) % 8 != 0) continue;
+      const Vec3<float> m = system_.direction(relative(at.x), at.m);
+      const float depth = at.depth / m.dot(at.m);
+      const Vec3<S> foot = at.x - (depth * m).template cast<S>();
+      float sunk = system_.normal_displacement_at(pressure_.q.data(), compressibility(force), relative(foot),
+                                                  m, static_cast<float>(tool.area(at.point)));
+      if constexpr (RegularPart::active)
+        sunk += regular_.normal_at(force.compliance(), foot.template cast<double>(),
+                                   points_[at.point].triangle, m);
+      p.sunk = sunk - (depth - at.depth);
+      if (sunk - depth < -tolerance / 10) {
+        inside_.push_back(c);  // sorted below; never beyond the capacity, which is that of touching_
+        more = true;
+      }
+    }
+    if (!more) return false;
+    for (std::size_t i = 0; i < n; ++i) store_load(i);  // the next round begins there
+    std::sort(inside_.begin(), inside_.end());
+    return true;
+  }
+
+  void move_anchors(const Pose<S>& before, const ToolPoints<S>& tool) noexcept {
+    for (const Touching& c : touching_) {
+      Point& p = points_[c.point];
+      if (p.loaded) p.anchor += Vec3<S>(c.x - before * tool.point(c.point)).template cast<float>();
+    }
+  }
+  /// A point that has just come into contact holds the surface where it is.
+  void begin_anchors() noexcept {
+    for (std::size_t i = 0; i < size(); ++i) {
+      const Mat3<float>& axes = system_.axes(i);
+      if (point(i).loaded) {
+        traction_.as[i] = axes.col(1).dot(point(i).anchor);
+        traction_.at[i] = axes.col(2).dot(point(i).anchor);
+      } else {
+        traction_.as[i] = traction_.us[i], traction_.at[i] = traction_.ut[i];
+      }
+    }
+  }
+  /// mu of every point: the law's limit of the whole contact over its normal force.
+  template <class Friction>
+  float coefficient(const Force& force, const Friction& friction) const noexcept {
+    double sum = 0;
+    for (std::size_t i = 0; i < size(); ++i) sum += double(pressure_.q[i]);
+    const S normal = static_cast<S>(sum * 4 * std::numbers::pi * force.shear_modulus());
+    if (!(normal > S(0))) return 0;
+    return static_cast<float>((slides_ ? friction.sliding_limit(normal) : friction.static_limit(normal)) /
+                              normal);
+  }
+  void store_load(std::size_t i) noexcept {
+    Vec3<float> P(pressure_.q[i], 0, 0);
+    if constexpr (has_friction) P.y() = traction_.s[i], P.z() = traction_.t[i];
+    point(i).load = system_.axes(i) * P;
+  }
+
+  void finish(const Force& force, const ToolPoints<S>& tool) noexcept {
+    const S scale = static_cast<S>(4 * std::numbers::pi * force.shear_modulus());
+    bool any_sticks = false;
+    for (const Touching& c : touching_) points_[c.point].loaded = false;
+    for (std::size_t i = 0; i < size(); ++i) {
+      const Touching& at = touching_[inside_[i]];
+      Point& p = point(i);
+      store_load(i);
+      const float q = pressure_.q[i];
+      p.sunk = pressure_.r[i] + at.depth;
+      p.loaded = q > 0;
+      if (!p.loaded) continue;
+      bool sticks = false;
+      if constexpr (has_friction) {
+        const Mat3<float>& axes = system_.axes(i);
+        const float s = traction_.s[i], t = traction_.t[i];
+        sticks = s * s + t * t < 0.9999f * traction_.limit[i] * traction_.limit[i];
+        p.anchor = sticks ? Vec3<float>(traction_.as[i] * axes.col(1) + traction_.at[i] * axes.col(2))
+                          : Vec3<float>(traction_.us[i] * axes.col(1) + traction_.ut[i] * axes.col(2));
+      }
+      any_sticks |= sticks;
+      // The tool feels minus the gradient of the energy: of the depth along the direction of pressing.
+      const Vec3<float> m = system_.axes(i).col(0), n = system_.normal(i);
+      const Vec3<float> felt = p.load + q * (n / n.dot(m) - m);
+      contacts_.push_back({at.point, sticks, at.x, -at.m.template cast<S>(), -scale * felt.template cast<S>(),
+                           scale * static_cast<S>(q) / tool.area(at.point), static_cast<S>(at.depth)});
+    }
+    slides_ = has_friction && !contacts_.empty() && !any_sticks;
+  }
+
+  std::vector<Point> points_;
+  std::vector<Touching> touching_;
+  std::vector<std::uint32_t> inside_;  // of touching_, rising: those that are solved for
+  std::vector<PointContact<S>> contacts_;
+  PointSystem system_;
+  PressureLists pressure_;
+  PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<has_friction, TractionLists, Absent<4>> traction_;
+  PALPATE_NO_UNIQUE_ADDRESS RegularPart regular_;
+  Residual residual_;
+  Pose<S> pose_;
+  Vec3<S> origin_;
+  std::uint32_t tick_ = 1;
+  bool slides_ = false;
+
+ public:
+  std::uint32_t id = 0;  ///< of the contact: another one after each lift-off
+};
+
+}  // namespace palpate::detail

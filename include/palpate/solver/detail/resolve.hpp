@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file From the tool's pose to the loads of a resolved contact, and to what the solver returns of it.
+
+#include <palpate/contact/contact_state.hpp>
+#include <palpate/core/fixed_vector.hpp>
+#include <palpate/resolved/contact_points.hpp>
+#include <palpate/resolved/detail/resolved_state.hpp>
+#include <palpate/resolved/elastic_contact.hpp>
+#include <palpate/solver/detail/gather.hpp>
+#include <palpate/solver/tick_result.hpp>
+
+namespace palpate::detail {
+
+template <ResolvedTopology Contacts, Real S, class Force, bool has_friction>
+class ResolvedCollector {
+ public:
+  ResolvedCollector(const Contacts&, const ToolPoints<S>& tool, const Force& force)
+      : body_(force.compliance()), tool_points_(tool.size()) {}
+
+  using Body = typename Force::Compliance;
+  using State = ResolvedState<S, Body, has_friction>;
+  template <class>
+  using Sum = NoMap;  // there is no sum by a law
+  [[nodiscard]] State initial_state() const { return State(body_, tool_points_, Contacts::max_points); }
+
+  template <ContactSurface Object, class Friction, class Acting>
+  void resolve(const Object& object, const ToolPoints<S>& tool, const Force& force, const Friction& friction,
+               const Pose<S>& X, const Acting&, State& state, FixedVector<ContactState<S>, 1>& contacts,
+               TickResult<S>& result) const noexcept {
+    result.status = Status::ok;
+    state.begin_tick();
+    const std::span<const Vec3<S>> outward = tool.vector_areas();
+    S deepest = S(0);
+    for_each_touching_leaf(
+        tool, X, object,
+        [&](std::uint32_t begin, const PointBatch<S>& x, const PenetrationBatch<S>& in) noexcept {
+          for (std::uint32_t k = 0; k < batch_size; ++k) {
+            if (!(in.depth[k] > S(0))) continue;
+            Vec3<S> m(-in.gradient_x[k], -in.gradient_y[k], -in.gradient_z[k]);
+            const S length = m.norm();
+            if (!(length > S(0))) continue;
+            // What faces away from the body cannot press on it.
+            if (!outward.empty() && !((X.rotation * outward[begin + k]).dot(m) > S(0))) continue;
+            deepest = (std::max)(deepest, in.depth[k]);
+            if (!state.touch(begin + k, Vec3<S>(x.x[k], x.y[k], x.z[k]), in.depth[k], m / length))
+              result.status |= Status::point_overflow;
+          }
+        });
+    const bool was_touching = state.has_contact();
+    state.solve(force, friction, tool, X);
+    if (!state.has_contact()) return;
+    result.status |= Status::contact;
+    if (deepest > object.reach()) result.status |= Status::beyond_reach;
+    if (state.residual().relative > S(10) * static_cast<S>(force.params().tolerance))
+      result.status |= Status::unconverged;
+    if (!was_touching) ++state.id;
+    contacts.push_back(summed(tool, X, Acting{}, state, deepest, result.wrench));
+  }
+
+ private:
+  /// The contact as one: the point contact with the same force and energy.
+  template <class Acting>
+  [[nodiscard]] static ContactState<S> summed(const ToolPoints<S>& tool, const Pose<S>& X, const Acting&,
+                                              State& state, S deepest, Wrench<S>& wrench) noexcept {
+    const Vec3<S> arm0 = X * tool.centre_of_mass();
+    ContactState<S> out{};
+    Vec3<S> normal = Vec3<S>::Zero(), friction = Vec3<S>::Zero(), centre = Vec3<S>::Zero();
+    S pressed = S(0), work = S(0);
+    for (const PointContact<S>& c : state.contacts()) {
+      const S fn = c.force.dot(c.normal);
+      wrench.force += c.force;
+      if constexpr (std::same_as<Acting, AtContact>) wrench.torque += (c.position - arm0).cross(c.force);
+      normal += fn * c.normal;
+      friction += c.force - fn * c.normal;
+      centre += fn * c.position;
+      pressed += fn;
+      work += fn * c.depth;
+      out.area += tool.area(c.point);
+      ++out.points;
+    }
+    out.id = state.id;
+    out.mode = !State::has_friction ? ContactMode::frictionless
+               : state.slides()     ? ContactMode::sliding
+                                    : ContactMode::sticking;
+    out.centre = centre / pressed;
+    out.normal = normal.normalized();
+    out.displacement = -(work / pressed) * out.normal;
+    out.force = wrench.force;
+    out.friction = friction;
+    out.normal_force = normal.norm();
+    out.depth = deepest;
+    return out;
+  }
+
+  Body body_;
+  std::size_t tool_points_;
+};
+
+/// What finds and adds up contacts, by topology.
+template <Topology Contacts, Real S, class Coupling, class Force, bool has_friction>
+struct CollectorOf {
+  using type = Collector<Contacts, S, Coupling>;
+};
+template <ResolvedTopology Contacts, Real S, class Coupling, class Force, bool has_friction>
+struct CollectorOf<Contacts, S, Coupling, Force, has_friction> {
+  using type = ResolvedCollector<Contacts, S, Force, has_friction>;
+};
+
+/// A collector that resolves asks the force model, one that does not the coupling.
+template <class Gather>
+[[nodiscard]] inline const auto& for_collector(const auto& force, const auto& coupling) noexcept {
+  if constexpr (requires { typename Gather::Body; })
+    return force;
+  else
+    return coupling;
+}
+
+}  // namespace palpate::detail
