@@ -73,6 +73,10 @@ class TabulatedForce {
       p.quadratic = (S(3) * d - S(2) * s0 - s1) / h;
       p.cubic = (s0 + s1 - S(2) * d) / h / h;
       pieces_[i + 1].energy = p.energy_at(h);
+      if (!is_finite(p.quadratic) || !is_finite(p.cubic) || !is_finite(pieces_[i + 1].energy)) {
+        fail_at("TabulatedForce", "curvature or energy of the curve is out of the scalar's range", "sample",
+                i, static_cast<double>(h));
+      }
     }
   }
 

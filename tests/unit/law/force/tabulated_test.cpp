@@ -148,6 +148,8 @@ TEST_CASE("tabulated: bad data is refused with its place and value") {
   CHECK(message({{0, 0}, {nan, 1}, {2, 2}}) ==
         "TabulatedForce: depth [m] must be finite, at sample 1, got nan");
   // Samples so close that the slope overflows.
+  CHECK(message({{0, 0}, {1e-200, 1}, {1, 2}}).find("curvature or energy of the curve is out") !=
+        std::string::npos);
   CHECK(message({{0, 0}, {1e-308, 1e300}, {1, 2e300}}).find("out of the scalar's range, at sample 0") !=
         std::string::npos);
 }
