@@ -40,9 +40,11 @@ class HertzForce {
   explicit HertzForce(const Params& params) : p_(params) {
     require_positive(p_.k, "HertzForce", "k [N/m^1.5] must be > 0 and finite");
     require_finite(p_.compliance, "HertzForce", "compliance [m/N] must be finite");
-    if (!(series_depth() >= (std::numeric_limits<S>::min)()))
-      fail("HertzForce", "compliance [m/N] is so far below 0 that D ends at no depth",
-           static_cast<double>(p_.compliance));
+    // e = C k sqrt(D) must stay a number up to the largest D, and the series' end above the smallest.
+    const S stiff = std::abs(p_.compliance) * p_.k;
+    if (!(stiff <= S(0.1L) * std::sqrt((std::numeric_limits<S>::max)())))
+      fail("HertzForce", "compliance times k [m^-0.5] is out of the scalar's range",
+           static_cast<double>(stiff));
   }
 
   /// F [N] at depth D [m].

@@ -101,9 +101,13 @@ TEST_CASE("bad nodes are refused") {
   };
   CHECK_THROWS_AS(make({.k = 0}), SetupError);
   CHECK_THROWS_AS(make({.k = 1, .compliance = -std::numeric_limits<double>::infinity()}), SetupError);
-  // D would end at 0.09/(C k)^2, below the smallest number: nothing is left of the law.
-  CHECK_THROWS_AS(HertzForce<double>({.k = 1, .compliance = -1e154}), SetupError);
+  // Below 0 D would end at 0.09/(C k)^2, less than the smallest number; above, C k sqrt(D) is infinite.
+  for (const double C : {-1e154, 1e154})
+    CHECK_THROWS_AS(HertzForce<double>({.k = 1, .compliance = C}), SetupError);
   CHECK_THROWS_AS(HertzForce<float>({.k = 1e-10f, .compliance = -2e38f}), SetupError);
+  CHECK_THROWS_AS(HertzForce<float>({.k = 6.8e22f, .compliance = 3e38f}), SetupError);
+  const HertzForce<float> soft({.k = 1e-10f, .compliance = 1e28f});
+  for (const float D : {1e-3f, 1.f, 1e6f}) CHECK_RELATIVE(soft.force(D), D / 1e28f, 1e-6);
   const HertzForce<float> steep({.k = 1e-10f, .compliance = -1e28f});  // at 9e-38
   for (const float D : {1e-37f, 1e-30f, 1.f}) {
     CHECK(steep.force(D) >= 0);
