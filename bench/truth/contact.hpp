@@ -54,7 +54,7 @@ class Contact {
   std::vector<Pose> poses;
   double penalty = 0, friction = 0;  ///< [MPa/mm], -
   double share = 1;                  ///< of the penalty, for a softer start
-  bool holds = false;                ///< friction without its limit
+  bool holds = false;                ///< friction without its limit where nothing slid before
 
   /// `faces`: the body's that may touch, by node.
   Contact(std::vector<RigidTool> rigid, std::vector<std::array<int, 6>> faces)
@@ -108,6 +108,7 @@ class Contact {
       p.anchor = p.place;
       p.gap_before = p.gap;
       p.traction_before = p.traction;
+      p.slid_before = p.pressure > 0 && !p.sticks;
     }
   }
   /// Was there friction at the last equilibrium?
@@ -149,7 +150,7 @@ class Contact {
     double gap_before = 0;
     V place = V::Zero(), normal = V::Zero(), traction = V::Zero();
     double gap = 0, pressure = 0, stretch = 1;  // stretch: deformed area by undeformed
-    bool sticks = false;
+    bool sticks = false, slid_before = false;
   };
 
   // Traction of a tool on the body at a place, and minus its derivative there. False where it does not touch.
@@ -182,7 +183,7 @@ class Contact {
     const Eigen::Matrix3d T = Eigen::Matrix3d::Identity() - n * n.transpose();
     const V trial = T * v;
     const double size = trial.norm(), limit = friction * p.pressure;
-    p.sticks = holds || size <= limit;
+    p.sticks = (holds && !p.slid_before) || size <= limit;
     p.traction = p.sticks ? trial : V(limit / size * trial);
     if (p.sticks) return part * stiff * T - n.dot(v) * H;
     return part * stiff * limit / size * (T - trial * trial.transpose() / (size * size));
