@@ -54,8 +54,9 @@ class ContactReference {
       write(step, all.back(), loads, shape, traction);
       for (std::size_t s = 0; s < samples_.size(); ++s)
         shapes_[s].push_back(rubber_.state().segment<3>(3 * surface_.node[samples_[s]]));
+      write_samples(all.size());
+      for (const File* file : {&loads, &shape, &traction}) std::fflush(file->file);
     }
-    write_samples(all.size());
     return all;
   }
 
