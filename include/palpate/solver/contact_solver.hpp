@@ -174,7 +174,6 @@ class ContactSolver {
 
   /// The regions of the last tick: values to hand over, record or draw.
   [[nodiscard]] std::span<const ContactState<S>> contacts() const noexcept { return state_.contacts(); }
-
   /// p0 of a contact: the origin of its deformation, on the undeformed surface [m].
   [[nodiscard]] Vec3<S> origin(const ContactState<S>& contact) const noexcept {
     return object_.closest(contact.origin()).position;
@@ -182,7 +181,6 @@ class ContactSolver {
 
   /// Forgets all contact, as after a calibration of the device.
   void reset() noexcept { state_.reset(); }
-
   /// Writes what moved since the last call under these contacts, of any tick and from any thread.
   template <Real T>
   Moved<S> draw(std::span<const ContactState<S>> contacts, const VertexBuffer<T>& out) noexcept
@@ -199,8 +197,10 @@ class ContactSolver {
   }
 
   /// Other parameters from the next tick on. The force changes at once: WrenchRamp takes the kick out of it.
-  /// States of the caller's are to be refreshed.
-  void set_force_law(const Force& force) noexcept {
+  /// States of the caller's are to be refreshed. A resolved contact keeps its body.
+  void set_force_law(const Force& force) noexcept
+    requires(!is_resolved)
+  {
     force_ = force;
     state_.refresh();
   }

@@ -179,6 +179,14 @@ TEST_CASE("a tick takes no heap, the same poses give the same bits, and bad pose
   CHECK(allocations == 0);
   CHECK(same);
   CHECK(left);
+  // A copy of the state goes on as the state does, without heap.
+  (void)first.tick(at(0, R - 1e-3));
+  auto copy = first.state();
+  const HeapCount of_copy;
+  const auto ahead = first.evaluate(at(1e-5, R - 1e-3), 1e-3, copy);
+  const std::size_t copied = of_copy.allocations();
+  CHECK(copied == 0);
+  CHECK(ahead.wrench.force == first.tick(at(1e-5, R - 1e-3)).wrench.force);
   (void)first.tick(at(0, R - 1e-3));
   const auto bad = first.tick(at(std::numeric_limits<double>::quiet_NaN(), 0));
   CHECK(has(bad.status, Status::invalid_pose));

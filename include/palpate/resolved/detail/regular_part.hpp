@@ -8,6 +8,7 @@
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/response/response_field.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <numbers>
 #include <vector>
@@ -29,8 +30,6 @@ class RegularPart {
         index_(max_nodes, 0),
         kept_(max_nodes * max_nodes, Mat3<float>::Zero()) {
     weights_.resize(capacity);
-    used_.reserve(max_nodes);
-    was_used_.reserve(max_nodes);
     const std::size_t padded = AlignedList<float>::padded(3 * max_nodes);
     load_.resize(padded);
     u_.resize(padded);
@@ -40,7 +39,7 @@ class RegularPart {
   void clear() noexcept {
     ++tick_;
     size_ = 0;
-    was_used_.swap(used_);
+    was_used_ = used_;
     used_.clear();
   }
   static constexpr std::uint32_t anywhere = ~0u;
@@ -54,7 +53,7 @@ class RegularPart {
   void build() noexcept {
     stride_ = padded<V>(3 * used_.size());
     for (std::size_t i = 3 * used_.size(); i < stride_; ++i) load_[i] = 0;
-    if (used_ == was_used_ && !changed_) return;
+    if (!changed_ && std::equal(used_.begin(), used_.end(), was_used_.begin(), was_used_.end())) return;
     changed_ = false;
     for (std::size_t l = 0; l < used_.size(); ++l)
       for (std::size_t c = 0; c < 3; ++c) {
@@ -215,7 +214,7 @@ class RegularPart {
   std::vector<std::uint16_t> index_;    // of a slot, among those in use
   std::vector<Mat3<float>> kept_;       // between slots
   std::vector<Weights> weights_;        // of the points
-  std::vector<std::uint16_t> used_, was_used_;
+  FixedVector<std::uint16_t, max_nodes> used_, was_used_;
   AlignedList<float> load_, u_, matrix_;  // of the nodes in use; the matrix by column
   std::size_t size_ = 0, stride_ = 0;
   std::uint32_t tick_ = 2;

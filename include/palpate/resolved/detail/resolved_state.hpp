@@ -7,6 +7,7 @@
 #include <palpate/core/pose.hpp>
 #include <palpate/detection/tool_points.hpp>
 #include <palpate/resolved/contact_points.hpp>
+#include <palpate/resolved/detail/bounded_list.hpp>
 #include <palpate/resolved/detail/convex_problem.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/resolved/elastic_contact.hpp>
@@ -28,13 +29,15 @@ class ResolvedState {
   using Force = ElasticContact<S, Compliance>;
 
   ResolvedState(const Compliance& body, std::size_t tool_points, std::size_t capacity)
-      : points_(tool_points), system_(capacity, has_friction), regular_(regular_part(body, capacity)) {
+      : points_(tool_points),
+        touching_(capacity),
+        inside_(capacity),
+        contacts_(capacity),
+        system_(capacity, has_friction),
+        regular_(regular_part(body, capacity)) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
     pressure_.resize(padded);
     if constexpr (has_friction) traction_.resize(padded);
-    touching_.reserve(capacity);
-    inside_.reserve(capacity);
-    contacts_.reserve(capacity);
   }
 
   void reset() noexcept {
@@ -43,7 +46,9 @@ class ResolvedState {
     slides_ = false;
   }
   [[nodiscard]] bool has_contact() const noexcept { return !contacts_.empty(); }
-  [[nodiscard]] std::span<const PointContact<S>> contacts() const noexcept { return contacts_; }
+  [[nodiscard]] std::span<const PointContact<S>> contacts() const noexcept {
+    return {contacts_.begin(), contacts_.size()};
+  }
   [[nodiscard]] const Residual& residual() const noexcept { return residual_; }
   [[nodiscard]] bool slides() const noexcept { return slides_; }
 
@@ -54,7 +59,7 @@ class ResolvedState {
   /// Tool point i, at x in object coordinates, is `depth` in the body, whose inward normal is m. False where
   /// there is no place left.
   bool touch(std::uint32_t i, const Vec3<S>& x, S depth, const Vec3<S>& m) noexcept {
-    if (touching_.size() == touching_.capacity()) return false;
+    if (touching_.full()) return false;
     touching_.push_back({i, x, m.template cast<float>(), static_cast<float>(depth)});
     Point& p = points_[i];
     if (p.tick + 1 != tick_) p = {};
@@ -303,9 +308,9 @@ class ResolvedState {
   }
 
   std::vector<Point> points_;
-  std::vector<Touching> touching_;
-  std::vector<std::uint32_t> inside_;  // of touching_, rising: those that are solved for
-  std::vector<PointContact<S>> contacts_;
+  BoundedList<Touching> touching_;
+  BoundedList<std::uint32_t> inside_;  // of touching_, rising: those that are solved for
+  BoundedList<PointContact<S>> contacts_;
   PointSystem system_;
   PressureLists pressure_;
   PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<has_friction, TractionLists, Absent<4>> traction_;
