@@ -263,6 +263,9 @@ TEST_CASE("half-spaces: bad input") {
         "HalfSpaceDeformation: the fixed region must hold at least one triangle");
   CHECK(refusal([&] { HalfSpaceDeformation<double>(MeshData<double>{}, cap); }) ==
         "HalfSpaceDeformation: needs a mesh with triangles");
+  CHECK(refusal([&] {
+          HalfSpaceDeformation<double>(MeshData<double>{.vertices = mesh.vertices, .triangles = {}}, cap);
+        }) == "HalfSpaceDeformation: needs a mesh with triangles");
   MeshData<double> broken = mesh;
   broken.vertices[3].x() = std::numeric_limits<double>::quiet_NaN();
   CHECK(refusal([&] { HalfSpaceDeformation<double>(broken, cap); }) ==
