@@ -6,8 +6,8 @@
 #include <palpate/geometry/deformed_surface.hpp>
 #include <palpate/geometry/sampled_surface.hpp>
 #include <palpate/law/friction/power_law.hpp>
-#include <palpate/solver/contact_solver.hpp>
 #include <palpate/solver/largest_stiffness.hpp>
+#include <palpate/solver/make_solver.hpp>
 
 #include <optional>
 

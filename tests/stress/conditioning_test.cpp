@@ -21,7 +21,7 @@
 #include <palpate/law/force/plastic.hpp>
 #include <palpate/law/force/power_law.hpp>
 #include <palpate/law/friction/coulomb.hpp>
-#include <palpate/solver/contact_solver.hpp>
+#include <palpate/solver/make_solver.hpp>
 
 #include <support/check.hpp>
 #include <support/joined.hpp>

@@ -4,8 +4,8 @@
 #include <palpate/geometry/box.hpp>
 #include <palpate/law/force/linear.hpp>
 #include <palpate/law/force/power_law.hpp>
-#include <palpate/solver/contact_solver.hpp>
 #include <palpate/solver/largest_stiffness.hpp>
+#include <palpate/solver/make_solver.hpp>
 
 #include <support/check.hpp>
 #include <support/no_heap.hpp>

@@ -9,7 +9,7 @@
 #include <palpate/law/force/relaxing.hpp>
 #include <palpate/luo_xiao/beam_skeleton.hpp>
 #include <palpate/luo_xiao/interpolation/phong.hpp>
-#include <palpate/solver/contact_solver.hpp>
+#include <palpate/solver/make_solver.hpp>
 
 #include <support/check.hpp>
 

@@ -2,6 +2,7 @@
 // The solver's state as a value, moving objects, parameters that change, the stiffness, and the shape as a
 // role.
 #include <palpate/solver/aliases.hpp>
+#include <palpate/solver/make_solver.hpp>
 #include <palpate/solver/stiffness.hpp>
 #include <palpate/solver/wrench_ramp.hpp>
 
