@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+
+/// @file Judges contact that is resolved at the tool's points (docs/resolved.md) by contact references: forces
+/// and torques of the public solver, the tool as a mesh, beside those of finite elements.
+///
+///     resolved_cases CASE_DIR...      e.g. bench/truth/data/contact/*
+///
+/// CASE_DIR holds case.txt and load.csv. Bodies: ellipsoids and boxes; several tools as far as they keep their
+/// places to each other. Prints each step, and the root mean square of the force's error as a vector.
+
+#include "truth/case_file.hpp"
+
+#include <palpate/geometry/box.hpp>
+#include <palpate/geometry/ellipsoid.hpp>
+#include <palpate/law/friction/coulomb.hpp>
+#include <palpate/resolved/contact_samples.hpp>
+#include <palpate/resolved/response_compliance.hpp>
+#include <palpate/solver/contact_solver.hpp>
+
+#include <cstdio>
+#include <memory>
+
+using namespace bench;
+
+namespace {
+
+constexpr double mm = 1e-3;
+
+struct Load {
+  V force = V::Zero(), torque = V::Zero();  // on the body [N], [N mm]
+  double area = 0;                          // [mm^2]
+};
+
+/// Of all tools together, by step.
+std::vector<Load> loads(const std::string& path) {
+  std::vector<Load> out;
+  std::istringstream in(read_text(path));
+  std::string line;
+  std::getline(in, line);
+  while (std::getline(in, line)) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream words(line);
+    std::size_t step = 0, tool = 0;
+    Load l;
+    words >> step >> tool >> l.force.x() >> l.force.y() >> l.force.z() >> l.torque.x() >> l.torque.y() >>
+        l.torque.z() >> l.area;
+    if (step > out.size()) out.emplace_back();
+    out[step - 1].force += l.force;
+    out[step - 1].torque += l.torque;
+    out[step - 1].area += l.area;
+  }
+  return out;
+}
+
+/// The tool's surface [m]: a fine box around it, each vertex moved to the tool by the exact distance.
+palpate::MeshData<double> mesh_of(const RigidTool& tool) {
+  V half = tool.size;
+  if (tool.kind == RigidTool::ball) half = V::Constant(tool.size.x());
+  if (tool.kind == RigidTool::capsule) half = V(tool.size.x() + tool.size.y() / 2, tool.size.x(), tool.size.x());
+  if (tool.kind == RigidTool::box) half = tool.size / 2;
+  if (tool.kind == RigidTool::cylinder) half = V(tool.size.x(), tool.size.y() / 2, tool.size.x());
+  if (tool.kind == RigidTool::mesh) throw std::runtime_error("mesh tools are not covered");
+  palpate::MeshData<double> mesh = palpate::Box<double>({.half = half}).mesh(8000);
+  for (V& p : mesh.vertices) {
+    const Distance d = tool.distance(p);
+    p = mm * (p - d.value * d.gradient);
+  }
+  return mesh;
+}
+
+template <class Object, class Friction>
+void judge(const std::string& name, const ContactCase& c, const Object& object,
+           const std::shared_ptr<const palpate::ResponseField>& field, const palpate::ToolPoints<double>& tool,
+           const Friction& friction, const std::vector<Load>& truth) {
+  using Elastic = palpate::ElasticContact<double, palpate::ResponseCompliance>;
+  palpate::ContactSolver<Object, Elastic, Friction, palpate::ContactPoints<512>> solver(
+      {.object = object,
+       .tool = tool,
+       .force = Elastic({.compliance = palpate::ResponseCompliance(field)}),
+       .friction = friction});
+  double sum = 0;
+  std::size_t steps = 0;
+  for (std::size_t k = 1; k < c.poses.size() && k <= truth.size(); ++k) {
+    palpate::TickResult<double> result{};
+    for (int i = 1; i <= 100; ++i) {
+      const Pose p = between(c.poses[k - 1][0], c.poses[k][0], i / 100.);
+      result = solver.tick({p.rotation.toRotationMatrix(), mm * p.origin});
+    }
+    double area = 0;
+    for (const auto& point : solver.state().points()) area += tool.area(point.point) / (mm * mm);
+    const Load& t = truth[k - 1];
+    const V force = -result.wrench.force, torque = -result.wrench.torque / mm;
+    const double error = (force - t.force).norm() / t.force.norm();
+    sum += error * error;
+    ++steps;
+    std::printf("%s step %zu: F %.3f %.3f %.3f N, reference %.3f %.3f %.3f: %.1f %%; ", name.c_str(), k, force.x(),
+                force.y(), force.z(), t.force.x(), t.force.y(), t.force.z(), 100 * error);
+    std::printf("T %.1f %.1f %.1f N mm, reference %.1f %.1f %.1f; area %+.0f %%; %zu points\n", torque.x(),
+                torque.y(), torque.z(), t.torque.x(), t.torque.y(), t.torque.z(), 100 * (area / t.area - 1),
+                solver.state().points().size());
+  }
+  std::printf("%s force, rms: %.1f %%\n", name.c_str(), 100 * std::sqrt(sum / static_cast<double>(steps)));
+}
+
+template <class Object>
+void judge(const std::string& name, const ContactCase& c, const Object& object, std::vector<Load> truth) {
+  // All tools as one, in the frame of the first, as long as they keep their places.
+  std::size_t together = c.poses.size();
+  palpate::MeshData<double> all;
+  for (std::size_t k = 0; k < c.tools.size(); ++k) {
+    const V offset = mm * (c.poses[0][k].origin - c.poses[0][0].origin);
+    for (std::size_t i = 0; i < together; ++i)
+      if ((c.poses[i][k].origin - c.poses[i][0].origin - offset / mm).norm() > 1e-9) together = i;
+    const auto mesh = mesh_of(c.tools[k]);
+    const auto first = static_cast<std::uint32_t>(all.vertices.size());
+    for (const V& p : mesh.vertices) all.vertices.push_back(p + offset);
+    for (auto t : mesh.triangles) {
+      for (auto& v : t) v += first;
+      all.triangles.push_back(t);
+    }
+  }
+  truth.resize((std::min)(truth.size(), together - 1));
+  const RigidTool& t = c.tools[0];
+  const bool is_round = t.kind == RigidTool::ball || t.kind == RigidTool::ellipsoid;
+  const double spacing = mm * (is_round ? 0.12 : 0.2) * (t.kind == RigidTool::box ? t.size.minCoeff() : t.size.x());
+  const palpate::ToolPoints<double> tool(
+      palpate::contact_samples(palpate::TriangleMesh<double>(all), spacing), {.contact_area = spacing * spacing});
+  const bool stands = c.body.stands();
+  const double fixed = mm * c.body.fixed_height;
+  const auto field = std::make_shared<const palpate::ResponseField>(
+      object.mesh(5000), [=](const V& x) { return stands ? x.y() <= 1e-6 : x.y() <= fixed; },
+      palpate::ResponseField::Params{.E = 1e6 * c.E, .nu = c.nu, .mesh = {.vertices = 600}});
+  if (c.friction > 0)
+    judge(name, c, object, field, tool,
+          palpate::CoulombFriction<double>({.mu_static = c.friction, .mu_dynamic = c.friction}), truth);
+  else
+    judge(name, c, object, field, tool, palpate::Frictionless<double>{}, truth);
+}
+
+void judge(const std::string& folder) {
+  const ContactCase c = CaseFile::read(folder + "/case.txt");
+  const std::vector<Load> truth = loads(folder + "/load.csv");
+  if (truth.empty()) throw std::runtime_error("no step was reached");
+  const std::string name = folder.substr(folder.find_last_of('/') + 1);
+  if (c.body.kind == Body::ellipsoid)
+    judge(name, c, palpate::Ellipsoid<double>({.axes = mm * c.body.size}), truth);
+  else if (c.body.kind == Body::box)
+    judge(name, c,
+          palpate::Box<double>({.half = mm / 2 * c.body.size, .centre = V(0, mm / 2 * c.body.size.y(), 0)}), truth);
+  else
+    throw std::runtime_error("of bodies ellipsoids and boxes are covered");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    try {
+      judge(argv[i]);
+    } catch (const std::exception& e) {
+      std::printf("%s: %s\n", argv[i], e.what());
+    }
+  }
+}
