@@ -56,7 +56,8 @@ std::vector<Load> loads(const std::string& path) {
 palpate::MeshData<double> mesh_of(const RigidTool& tool) {
   V half = tool.size;
   if (tool.kind == RigidTool::ball) half = V::Constant(tool.size.x());
-  if (tool.kind == RigidTool::capsule) half = V(tool.size.x() + tool.size.y() / 2, tool.size.x(), tool.size.x());
+  if (tool.kind == RigidTool::capsule)
+    half = V(tool.size.x() + tool.size.y() / 2, tool.size.x(), tool.size.x());
   if (tool.kind == RigidTool::box) half = tool.size / 2;
   if (tool.kind == RigidTool::cylinder) half = V(tool.size.x(), tool.size.y() / 2, tool.size.x());
   if (tool.kind == RigidTool::mesh) throw std::runtime_error("mesh tools are not covered");
@@ -70,8 +71,9 @@ palpate::MeshData<double> mesh_of(const RigidTool& tool) {
 
 template <class Object, class Friction>
 void judge(const std::string& name, const ContactCase& c, const Object& object,
-           const std::shared_ptr<const palpate::ResponseField>& field, const palpate::ToolPoints<double>& tool,
-           const Friction& friction, const std::vector<Load>& truth) {
+           const std::shared_ptr<const palpate::ResponseField>& field,
+           const palpate::ToolPoints<double>& tool, const Friction& friction,
+           const std::vector<Load>& truth) {
   using Elastic = palpate::ElasticContact<double, palpate::ResponseCompliance>;
   palpate::ContactSolver<Object, Elastic, Friction, palpate::ContactPoints<512>> solver(
       {.object = object,
@@ -93,8 +95,8 @@ void judge(const std::string& name, const ContactCase& c, const Object& object,
     const double error = (force - t.force).norm() / t.force.norm();
     sum += error * error;
     ++steps;
-    std::printf("%s step %zu: F %.3f %.3f %.3f N, reference %.3f %.3f %.3f: %.1f %%; ", name.c_str(), k, force.x(),
-                force.y(), force.z(), t.force.x(), t.force.y(), t.force.z(), 100 * error);
+    std::printf("%s step %zu: F %.3f %.3f %.3f N, reference %.3f %.3f %.3f: %.1f %%; ", name.c_str(), k,
+                force.x(), force.y(), force.z(), t.force.x(), t.force.y(), t.force.z(), 100 * error);
     std::printf("T %.1f %.1f %.1f N mm, reference %.1f %.1f %.1f; area %+.0f %%; %zu points\n", torque.x(),
                 torque.y(), torque.z(), t.torque.x(), t.torque.y(), t.torque.z(), 100 * (area / t.area - 1),
                 solver.state().points().size());
@@ -122,9 +124,11 @@ void judge(const std::string& name, const ContactCase& c, const Object& object, 
   truth.resize((std::min)(truth.size(), together - 1));
   const RigidTool& t = c.tools[0];
   const bool is_round = t.kind == RigidTool::ball || t.kind == RigidTool::ellipsoid;
-  const double spacing = mm * (is_round ? 0.12 : 0.2) * (t.kind == RigidTool::box ? t.size.minCoeff() : t.size.x());
+  const double spacing =
+      mm * (is_round ? 0.12 : 0.2) * (t.kind == RigidTool::box ? t.size.minCoeff() : t.size.x());
   const palpate::ToolPoints<double> tool(
-      palpate::contact_samples(palpate::TriangleMesh<double>(all), spacing), {.contact_area = spacing * spacing});
+      palpate::contact_samples(palpate::TriangleMesh<double>(all), spacing),
+      {.contact_area = spacing * spacing});
   const bool stands = c.body.stands();
   const double fixed = mm * c.body.fixed_height;
   const auto field = std::make_shared<const palpate::ResponseField>(
@@ -146,7 +150,8 @@ void judge(const std::string& folder) {
     judge(name, c, palpate::Ellipsoid<double>({.axes = mm * c.body.size}), truth);
   else if (c.body.kind == Body::box)
     judge(name, c,
-          palpate::Box<double>({.half = mm / 2 * c.body.size, .centre = V(0, mm / 2 * c.body.size.y(), 0)}), truth);
+          palpate::Box<double>({.half = mm / 2 * c.body.size, .centre = V(0, mm / 2 * c.body.size.y(), 0)}),
+          truth);
   else
     throw std::runtime_error("of bodies ellipsoids and boxes are covered");
 }
