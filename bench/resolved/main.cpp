@@ -21,6 +21,7 @@
 #include <palpate/resolved/response_compliance.hpp>
 #include <palpate/solver/contact_solver.hpp>
 
+#include <reference/rigid_sphere.hpp>
 #include <support/no_heap.hpp>
 
 namespace {
@@ -28,16 +29,7 @@ namespace {
 using namespace bench;
 using V = Vec3<double>;
 constexpr double R = 0.015, depth = 1e-3, top = 0.05, E = 1e6, nu = 0.5;
-
-double exact_force() {  // [sneddon1965]
-  double low = 0, high = 0.9 * R;
-  for (int i = 0; i < 100; ++i) {
-    const double a = (low + high) / 2;
-    (a / 2 * std::log((R + a) / (R - a)) < depth ? low : high) = a;
-  }
-  const double a = low;
-  return E / (1 - nu * nu) / 2 * ((a * a + R * R) * std::log((R + a) / (R - a)) - 2 * a * R);
-}
+const double exact_force = test::rigid_sphere_force(R, depth, E / (1 - nu * nu));
 
 SurfaceSamples<double> pole(double spacing) {
   const auto all = contact_samples(TriangleMesh<double>(Sphere<double>({.radius = R}).mesh(4000)), spacing);
@@ -82,7 +74,7 @@ void run(const Output& out, const char* body, const char* friction_name, const C
       points += static_cast<double>(solver.state().points().size());
       iterations += solver.state().residual().iterations;
       force += result.wrench.force.y();
-      if (exact) error = (std::max)(error, std::abs(result.wrench.force.y() / exact_force() - 1));
+      if (exact) error = (std::max)(error, std::abs(result.wrench.force.y() / exact_force - 1));
     }
   const auto allocations = heap.allocations();
   const double ticks = static_cast<double>(times.count());

@@ -17,6 +17,8 @@
 #include <palpate/resolved/response_compliance.hpp>
 #include <palpate/solver/contact_solver.hpp>
 
+#include <support/joined.hpp>
+
 #include <cstdio>
 #include <memory>
 
@@ -113,13 +115,7 @@ void judge(const std::string& name, const ContactCase& c, const Object& object, 
     const V offset = mm * (c.poses[0][k].origin - c.poses[0][0].origin);
     for (std::size_t i = 0; i < together; ++i)
       if ((c.poses[i][k].origin - c.poses[i][0].origin - offset / mm).norm() > 1e-9) together = i;
-    const auto mesh = mesh_of(c.tools[k]);
-    const auto first = static_cast<std::uint32_t>(all.vertices.size());
-    for (const V& p : mesh.vertices) all.vertices.push_back(p + offset);
-    for (auto t : mesh.triangles) {
-      for (auto& v : t) v += first;
-      all.triangles.push_back(t);
-    }
+    palpate::test::append(all, mesh_of(c.tools[k]), offset);
   }
   truth.resize((std::min)(truth.size(), together - 1));
   const RigidTool& t = c.tools[0];

@@ -139,6 +139,15 @@ struct MeshData {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< m x 3, indices of vertices
 };
 
+/// The mesh in another scalar.
+template <Real T, Real S>
+[[nodiscard]] inline MeshData<T> mesh_cast(const MeshData<S>& mesh) {
+  MeshData<T> out{{}, mesh.triangles};
+  out.vertices.reserve(mesh.vertices.size());
+  for (const Vec3<S>& v : mesh.vertices) out.vertices.push_back(v.template cast<T>());
+  return out;
+}
+
 template <class B>  // the surface point closest to x, and the signed distance; defined for every finite x
 concept HasClosest = requires(const B& body, const Vec3<typename B::Scalar>& x) {
   { body.closest(x) } noexcept -> std::same_as<SurfacePoint<typename B::Scalar>>;

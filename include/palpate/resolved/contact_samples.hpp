@@ -19,9 +19,7 @@ template <Real S>
   require_positive(spacing, "contact_samples", "spacing [m] must be > 0");
   if (!(static_cast<double>(mesh.area() / spacing / spacing) <= 2.0 * detail::max_contact_samples))
     fail("contact_samples", "spacing [m] asks for more than 20,000 points", static_cast<double>(spacing));
-  MeshData<double> data{{}, mesh.triangles()};
-  for (const auto& v : mesh.vertices()) data.vertices.push_back(v.template cast<double>());
-  const TriangleMesh<double> wide(std::move(data));
+  const TriangleMesh<double> wide(mesh_cast<double>(mesh.data()));
   const auto h = static_cast<double>(spacing);
   SurfaceSamples<S> out;
   detail::ToolParts tool(wide, h, crease);

@@ -64,14 +64,14 @@ class ResponseField {
   /// `fixed` is true where the object is fixed; the mesh is cut along its boundary.
   template <Real S>
   ResponseField(const MeshData<S>& mesh, const FixedRegion& fixed, const Params& params) {
-    build(to_double(mesh), fixed, params);
+    build(mesh_cast<double>(mesh), fixed, params);
   }
   /// The object is fixed at the listed vertices: on every triangle that has all three of its corners in the
   /// list.
   template <Real S>
   ResponseField(const MeshData<S>& mesh, const std::vector<std::uint32_t>& fixed_vertices,
                 const Params& params) {
-    build(to_double(mesh), fixed_vertices, params);
+    build(mesh_cast<double>(mesh), fixed_vertices, params);
   }
   /// From parts that were saved (save.hpp), which has checked them.
   explicit ResponseField(ResponseParts parts);
@@ -123,15 +123,6 @@ class ResponseField {
 
  private:
   [[nodiscard]] InfluenceFunctions functions() const noexcept { return {influence_.data(), stride_}; }
-  template <Real S>
-  [[nodiscard]] static MeshData<double> to_double(const MeshData<S>& mesh) {
-    MeshData<double> out;
-    out.triangles = mesh.triangles;
-    out.vertices.reserve(mesh.vertices.size());
-    for (const auto& v : mesh.vertices) out.vertices.push_back(v.template cast<double>());
-    return out;
-  }
-
   void build(const MeshData<double>& mesh, const FixedRegion& fixed, const Params& params);
   void build(const MeshData<double>& mesh, const std::vector<std::uint32_t>& fixed_vertices,
              const Params& params);

@@ -389,11 +389,8 @@ template <ContactSurface Object, ForceModel Force, FrictionLaw Friction, Topolog
            std::same_as<typename Object::Scalar, typename Friction::Scalar> &&
            std::same_as<typename Object::Scalar, typename Deformation::Scalar> &&
            (ElasticForceModel<Force> == ResolvedTopology<Contacts>)
-TickResult<typename Object::Scalar> ContactSolver<Object, Force, Friction, Contacts, Deformation, Acting,
-                                                  Coupling>::contact_at(const Pose<typename Object::Scalar>&
-                                                                            X,
-                                                                        typename Object::Scalar dt,
-                                                                        State& state) const noexcept {
+auto ContactSolver<Object, Force, Friction, Contacts, Deformation, Acting, Coupling>::contact_at(
+    const Pose<S>& X, S dt, State& state) const noexcept -> TickResult<S> {
   return in_contact(X, dt, state);
 }
 

@@ -62,10 +62,7 @@ class ElasticBody {
 
   template <Real S>
   ElasticBody(const MeshData<S>& mesh, const Params& params) {
-    MeshData<double> data{{}, mesh.triangles};
-    data.vertices.reserve(mesh.vertices.size());
-    for (const auto& v : mesh.vertices) data.vertices.push_back(v.template cast<double>());
-    build(std::move(data), params);
+    build(mesh_cast<double>(mesh), params);
   }
 
   /// As it was given: what is drawn, vertex by vertex.

@@ -19,9 +19,9 @@
 namespace palpate::detail {
 
 /// What is left of a solve.
-struct Residual {
+struct Remainder {
   int iterations = 0;
-  float relative = 0;  ///< norm of what violates the conditions, over the norm of the depths
+  float norm = 0;  ///< of what violates the conditions [m]
 };
 
 /// Lists of a solve, sized at set-up.
@@ -32,11 +32,11 @@ struct PressureLists {
   }
 };
 
-/// Pressures for the depths d; `apply(q, y)` gives y = A q; tolerance on the residual's norm [m]. q is the
+/// Pressures for the depths d; `apply(q, y)` gives y = A q; tolerance on the norm [m]. q is the
 /// start and the result, r = A q - d.
 template <class Apply>
-[[nodiscard]] Residual solve_pressures(std::size_t n, PressureLists& lists, float tolerance, int iterations,
-                                       const Apply& apply) noexcept {
+[[nodiscard]] Remainder solve_pressures(std::size_t n, PressureLists& lists, float tolerance, int iterations,
+                                        const Apply& apply) noexcept {
   float *const q = lists.q.data(), *const r = lists.r.data(), *const p = lists.p.data(),
                *const y = lists.y.data();
   const float* const d = lists.d.data();
@@ -47,7 +47,7 @@ template <class Apply>
   residual();
   float before = 1;
   bool restart = true;
-  Residual result;
+  Remainder result;
   for (;; ++result.iterations) {
     float free2 = 0, overlap2 = 0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -55,8 +55,8 @@ template <class Apply>
       free2 += q[i] > 0 ? r2 : 0;
       overlap2 += q[i] <= 0 && r[i] < 0 ? r2 : 0;
     }
-    result.relative = std::sqrt(free2 + overlap2);
-    if (!(result.relative > tolerance) || result.iterations == iterations) return result;
+    result.norm = std::sqrt(free2 + overlap2);
+    if (!(result.norm > tolerance) || result.iterations == iterations) return result;
     const float beta = restart ? 0 : free2 / before;
     before = free2;
     // Points that overlap come in along the same step.
@@ -98,14 +98,14 @@ struct TractionLists {
 /// Tractions s, t within discs of radius `limit`, for the anchors as, at. us, ut: displacements by
 /// pressures and tractions; they are kept so. `apply(s, t, us, ut)`: displacements by tractions.
 template <class Apply>
-[[nodiscard]] Residual solve_tractions(std::size_t n, TractionLists& lists, float tolerance, int iterations,
-                                       const Apply& apply) noexcept {
+[[nodiscard]] Remainder solve_tractions(std::size_t n, TractionLists& lists, float tolerance, int iterations,
+                                        const Apply& apply) noexcept {
   float *const s = lists.s.data(), *const t = lists.t.data(), *const us = lists.us.data(),
                *const ut = lists.ut.data(), *const zs = lists.zs.data(), *const zt = lists.zt.data(),
                *const ps = lists.ps.data(), *const pt = lists.pt.data(), *const ys = lists.ys.data(),
                *const yt = lists.yt.data();
   const float *const limit = lists.limit.data(), *const as = lists.as.data(), *const at = lists.at.data();
-  // By (ps, pt), held within the discs; what has changed goes to (ps, pt). False where a disc held it.
+  // By (ps, pt), held within the discs; what has changed goes to (ys, yt). False where a disc held a point.
   const auto move = [&](float step) {
     bool within = true;
     for (std::size_t i = 0; i < n; ++i) {
@@ -116,7 +116,7 @@ template <class Apply>
         ns *= shrink, nt *= shrink;
         within = false;
       }
-      ys[i] = ns - s[i], yt[i] = nt - t[i];  // the image is used up by now, or added before
+      ys[i] = ns - s[i], yt[i] = nt - t[i];  // what apply() put there was added before
       s[i] = ns, t[i] = nt;
     }
     return within;
@@ -134,7 +134,7 @@ template <class Apply>
 
   float before = 1;
   bool restart = true;
-  Residual result;
+  Remainder result;
   for (;; ++result.iterations) {
     float size2 = 0, mixed = 0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -151,8 +151,8 @@ template <class Apply>
       mixed += gs * zs[i] + gt * zt[i];
       zs[i] = gs, zt[i] = gt;
     }
-    result.relative = std::sqrt(size2);
-    if (!(result.relative > tolerance) || result.iterations == iterations) return result;
+    result.norm = std::sqrt(size2);
+    if (!(result.norm > tolerance) || result.iterations == iterations) return result;
     const float beta = restart ? 0 : (std::max)((size2 - mixed) / before, 0.f);
     before = size2;
     float zp = 0;

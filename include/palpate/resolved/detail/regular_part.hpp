@@ -7,6 +7,7 @@
 #include <palpate/core/fixed_vector.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/response/response_field.hpp>
+#include <palpate/response/tick/solved_nodes.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -52,7 +53,6 @@ class RegularPart {
   /// The matrix between the nodes in use.
   void build() noexcept {
     stride_ = padded<V>(3 * used_.size());
-    for (std::size_t i = 3 * used_.size(); i < stride_; ++i) load_[i] = 0;
     if (!changed_ && std::equal(used_.begin(), used_.end(), was_used_.begin(), was_used_.end())) return;
     changed_ = false;
     for (std::size_t l = 0; l < used_.size(); ++l)
@@ -84,7 +84,7 @@ class RegularPart {
     gather_pressures(system, q);
     scatter(system, us, ut);
   }
-  /// w along m at a further point, of the pressures of gather_pressures().
+  /// The nodes' displacements by pressures alone, by tractions alone.
   void gather_pressures(const PointSystem& system, const float* q) noexcept {
     gather([&](std::size_t i) { return Vec3<float>(q[i] * system.axes(i).col(0)); });
   }
@@ -93,6 +93,7 @@ class RegularPart {
       return Vec3<float>(s[i] * system.axes(i).col(1) + t[i] * system.axes(i).col(2));
     });
   }
+  /// w along m at a further point, of what was gathered last.
   template <class Body>
   [[nodiscard]] float normal_at(const Body& body, const Vec3<double>& x, std::uint32_t& triangle,
                                 const Vec3<float>& m) noexcept {
@@ -108,7 +109,7 @@ class RegularPart {
     std::uint16_t node;  // among those in use
     float value;
   };
-  using Weights = FixedVector<Weight, 12>;
+  using Weights = FixedVector<Weight, place_nodes>;
 
   [[nodiscard]] Mat3<float>& kept(std::size_t k, std::size_t l) noexcept { return kept_[k * max_nodes + l]; }
 
@@ -119,23 +120,13 @@ class RegularPart {
     const LoadMesh& mesh = field.load_mesh();
     const LoadPosition position = triangle == anywhere ? mesh.locate(x) : mesh.locate(x, triangle);
     triangle = position.triangle;
-    double size = 0;
-    for (std::size_t i = 0; i < 3; ++i)
-      size += position.weight[Eigen::Index(i)] * mesh.nodes()[position.node[i]].size;
-    // Far from the surface the nearest position may jump, so w fades: to a half at one edge's length.
-    const double far2 = position.distance2 / (size * size), fade = 1 / (1 + far2 * far2);
-    const auto put = [&](std::uint32_t node, double weight) {
-      const std::uint16_t index = take_in ? use(field, node) : in_use(node);
-      if (index == none || weights.full()) return;
-      weights.push_back({index, static_cast<float>(weight * fade)});
-    };
-    for (std::size_t i = 0; i < 3; ++i) {
-      const double weight = position.weight[Eigen::Index(i)];
-      if (!(weight > 0)) continue;
-      if (position.node[i] < mesh.solved())
-        put(position.node[i], weight);
-      else
-        for (const LoadMesh::Share& s : mesh.shares(position.node[i])) put(s.node, weight * double(s.weight));
+    FixedVector<NodeWeight, place_nodes, Spare::undefined> nodes;
+    add_position(mesh, position, nodes);
+    const double share = regular_share(position, mean_of(&LoadNode::size, field, position));
+    for (const NodeWeight& n : nodes) {
+      if (!(n.weight > 0)) continue;
+      const std::uint16_t index = take_in ? use(field, n.node) : in_use(n.node);
+      if (index != none) weights.push_back({index, static_cast<float>(n.weight * share)});
     }
   }
   // The node's index among those in use, or none.

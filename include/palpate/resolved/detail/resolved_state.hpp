@@ -21,6 +21,12 @@
 
 namespace palpate::detail {
 
+/// How well a tick has met the conditions of contact.
+struct Residual {
+  int iterations = 0;
+  float relative = 0;  ///< norm of what violates them, over the norm of the depths
+};
+
 /// What a tick leaves for the next: loads at the points, and where those that stick hold the surface.
 template <Real S, ContactCompliance Compliance, bool has_friction_>
 class ResolvedState {
@@ -164,6 +170,7 @@ class ResolvedState {
   template <class Friction>
   void solve_inside(const Force& force, const Friction& friction, float tolerance) noexcept {
     const int iterations = force.params().iterations;
+    const float per_norm = static_cast<float>(force.params().tolerance) / tolerance;
     const std::size_t n = size();
     const auto normal = [&](const float* q, float* y) noexcept {
       system_.normal_displacements(q, y);
@@ -181,9 +188,9 @@ class ResolvedState {
           regular_.add_normal_by_tractions(system_, traction_.s.data(), traction_.t.data(), y);
         for (std::size_t i = 0; i < n; ++i) pressure_.d[i] -= y[i];
       }
-      const Residual pressed = solve_pressures(n, pressure_, tolerance, iterations, normal);
+      const Remainder pressed = solve_pressures(n, pressure_, tolerance, iterations, normal);
       residual_.iterations += pressed.iterations;
-      residual_.relative = pressed.relative / tolerance * static_cast<float>(force.params().tolerance);
+      residual_.relative = pressed.norm * per_norm;
       if constexpr (has_friction) {
         if (turn > 0 && pressed.iterations == 0) return;  // what tractions change is within the tolerance
         const auto tangential = [&](const float* s, const float* t, float* us, float* ut) noexcept {
@@ -200,10 +207,9 @@ class ResolvedState {
           begin_anchors();
         }
         for (std::size_t i = 0; i < n; ++i) traction_.limit[i] = mu * pressure_.q[i];
-        const Residual dragged = solve_tractions(n, traction_, tolerance, iterations, tangential);
+        const Remainder dragged = solve_tractions(n, traction_, tolerance, iterations, tangential);
         residual_.iterations += dragged.iterations;
-        residual_.relative = (std::max)(
-            residual_.relative, dragged.relative / tolerance * static_cast<float>(force.params().tolerance));
+        residual_.relative = (std::max)(residual_.relative, dragged.norm * per_norm);
       }
     }
   }

@@ -55,8 +55,8 @@ namespace palpate::detail {
   Mat3<double> out =
       ci.carried * cj.carried *
       near_of_forces(cj, Vec3<double>(ci.tool.x - cj.tool.x), std::hypot(ci.tool.a, cj.tool.a), field.nu());
-  for (const PatchWeight& i : ci.nodes)
-    for (const PatchWeight& j : cj.nodes) {
+  for (const NodeWeight& i : ci.nodes)
+    for (const NodeWeight& j : cj.nodes) {
       const double g = ci.regular * cj.regular * i.weight * j.weight;
       for (std::size_t l = 0; l < 3; ++l) out.col(Eigen::Index(l)) += g * field.at(i.node, j.node, l);
     }
@@ -80,9 +80,9 @@ namespace palpate::detail {
     const auto t = disc.bending_couple(couple[l].dot(p), nu);
     out.col(Eigen::Index(l)) = near * (t.in_plane * p + t.normal * cj.tool.m + t.along * couple[l]);
   }
-  for (const PatchWeight& j : cj.nodes) {
+  for (const NodeWeight& j : cj.nodes) {
     Mat3<double> mean = Mat3<double>::Zero();
-    for (const PatchWeight& i : ci.nodes)
+    for (const NodeWeight& i : ci.nodes)
       for (std::size_t l = 0; l < 3; ++l)
         mean.col(Eigen::Index(l)) += i.weight * field.at(i.node, j.node, 3 + l);
     for (std::size_t l = 0; l < 3; ++l)
@@ -99,8 +99,8 @@ namespace palpate::detail {
   const Vec3<double> r = ci.tool.x - cj.tool.x, p = tangential(r, cj.tool.m);
   Vec3<double> out =
       near * mean_disc(cj, r, p, std::hypot(ci.tool.a, cj.tool.a)).torsional_couple() * cj.tool.m.cross(p);
-  for (const PatchWeight& i : ci.nodes)
-    for (const PatchWeight& j : cj.nodes)
+  for (const NodeWeight& i : ci.nodes)
+    for (const NodeWeight& j : cj.nodes)
       out += ci.regular * cj.regular * i.weight * j.weight * field.at(i.node, j.node, 6);
   return out;
 }

@@ -93,7 +93,7 @@ class FieldSum {
     const double torsion = contacts.bonded(c).rotation.torsion;
     auto second = all(second_);
     second.setZero();
-    for (const PatchWeight& at : placed.nodes) {
+    for (const NodeWeight& at : placed.nodes) {
       const Vec3<float> g =
           (placed.regular * at.weight * loads_of_node(*field_, at.node, loads.dipole, loads.couple))
               .template cast<float>();

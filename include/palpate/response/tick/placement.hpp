@@ -10,40 +10,12 @@
 
 #include <palpate/response/tick/bounded_compliance.hpp>
 #include <palpate/response/tick/constants.hpp>
+#include <palpate/response/tick/solved_nodes.hpp>
 #include <palpate/response/tick/stages.hpp>
 
 #include <algorithm>
 
 namespace palpate::detail {
-
-/// Mean of a length of the nodes (size or spacing) around a position, interpolated [m].
-[[nodiscard]] inline double mean_of(double LoadNode::*length, const ResponseField& field,
-                                    const LoadPosition& position) noexcept {
-  double mean = 0;
-  for (std::size_t i = 0; i < 3; ++i)
-    mean += position.weight[Eigen::Index(i)] * field.load_mesh().nodes()[position.node[i]].*length;
-  return mean;
-}
-
-/// Solved nodes of a position: its own, and for each node that is not solved those that share its load.
-template <class List>
-void add_position(const LoadMesh& touch, const LoadPosition& position, List& list) noexcept {
-  const auto add = [&list](std::uint32_t node, double weight) {
-    const auto same =
-        std::find_if(list.begin(), list.end(), [node](const PatchWeight& w) { return w.node == node; });
-    if (same != list.end())
-      same->weight += weight;
-    else
-      list.push_back({node, weight});
-  };
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double weight = position.weight[Eigen::Index(i)];
-    if (position.node[i] < touch.solved())
-      add(position.node[i], weight);
-    else
-      for (const LoadMesh::Share& s : touch.shares(position.node[i])) add(s.node, weight * double(s.weight));
-  }
-}
 
 /// S = C^-1 with the modes of C at least a tenth of the half-space's.
 [[nodiscard]] inline Mat3<double> bounded_inverse(Mat3<double>& C, double min_near) noexcept {
@@ -64,11 +36,9 @@ void add_position(const LoadMesh& touch, const LoadPosition& position, List& lis
                spacing = mean_of(&LoadNode::spacing, field, c.position);
   c.level = field.table().level(tool.seen2() - 0.25 * spacing * spacing);
   c.sagitta = field.table().edge(&MomentRow::sagitta, c.position.node, c.position.weight, tool.a);
-  // Far from the surface the nearest position may jump, so w fades with the distance: to a half at one edge.
-  const double far2 = c.position.distance2 / (size * size);
-  c.regular = 1 / (1 + far2 * far2);
+  c.regular = regular_share(c.position, size);
   double sum = 0;
-  for (const PatchWeight& w : c.nodes) sum += w.weight;
+  for (const NodeWeight& w : c.nodes) sum += w.weight;
   c.carried = 1 - c.regular * (std::max)(1 - sum, 0.0);
   c.w = c.regular * c.regular * field.table().own(c.position.triangle, c.position.weight, c.level);
   c.near = flat_punch_compliance(tool.a, field.nu());

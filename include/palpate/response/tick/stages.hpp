@@ -19,6 +19,7 @@
 #include <palpate/core/fixed_vector.hpp>
 #include <palpate/response/tick/near_field.hpp>
 #include <palpate/response/tick/patch_moments.hpp>
+#include <palpate/response/tick/solved_nodes.hpp>
 
 #include <algorithm>
 #include <memory>
@@ -53,18 +54,11 @@ struct Indenter {
   [[nodiscard]] double seen2() const noexcept { return (is_sphere() ? 0.8 : 1) * a * a; }
 };
 
-/// A solved node of the load mesh that shares a contact's force.
-struct PatchWeight {
-  std::uint32_t node;
-  double weight;
-};
-constexpr std::size_t place_nodes = 3 * LoadMesh::most_parts;
-
 /// Placed on the load mesh: C = C_near + w with its modes bounded from below.
 struct PlacedContact {
   Indenter tool;
   LoadPosition position;
-  FixedVector<PatchWeight, place_nodes, Spare::undefined> nodes;
+  FixedVector<NodeWeight, place_nodes, Spare::undefined> nodes;
   double regular = 1;        ///< share of w that counts: 1 on the surface, 0 far from it
   double carried = 1;        ///< part of the force that does not fall on the fixed region
   PatchTable::Level level;   ///< of the radius

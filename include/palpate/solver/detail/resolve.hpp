@@ -64,14 +64,15 @@ class ResolvedCollector {
   template <class Acting>
   [[nodiscard]] static ContactState<S> summed(const ToolPoints<S>& tool, const Pose<S>& X, const Acting&,
                                               State& state, S deepest, Wrench<S>& wrench) noexcept {
-    const Vec3<S> arm0 = X * tool.centre_of_mass();
+    const Vec3<S> mass_centre = X * tool.centre_of_mass();
     ContactState<S> out{};
     Vec3<S> normal = Vec3<S>::Zero(), friction = Vec3<S>::Zero(), centre = Vec3<S>::Zero();
     S pressed = S(0), work = S(0);
     for (const PointContact<S>& c : state.contacts()) {
       const S fn = c.force.dot(c.normal);
       wrench.force += c.force;
-      if constexpr (std::same_as<Acting, AtContact>) wrench.torque += (c.position - arm0).cross(c.force);
+      if constexpr (std::same_as<Acting, AtContact>)
+        wrench.torque += (c.position - mass_centre).cross(c.force);
       normal += fn * c.normal;
       friction += c.force - fn * c.normal;
       centre += fn * c.position;
