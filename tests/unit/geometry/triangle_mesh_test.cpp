@@ -220,6 +220,27 @@ TEST_CASE("mesh: inside out, flat, nested and apart") {
   check_only(together(cube(), cube(V(0.1, 0, 0), 0.2)), MeshDefect::inside_out, 1, 12, at_12);
 }
 
+TEST_CASE("mesh: a larger part inside out whose first vertex is in a smaller one, which it runs through") {
+  // The first vertex of each says nothing: the smaller part's is outside, the larger part's is inside.
+  const Mesh small = cube(V::Zero(), 0.2), large = cube(V::Constant(0.5), 0.5, true);
+  CHECK(large.vertices[0].cwiseAbs().maxCoeff() < 0.2);
+  CHECK(inspect(together(small, large))[MeshDefect::inside_out].first == 12);
+  CHECK(!inspect(together(large, small)).valid());
+  // Nor does a third part far away hide it, by its volume or by where it stands.
+  CHECK(!inspect(together(together(small, large), cube(V(9, 0, 0), 4))).valid());
+  // The same size, and beyond the part that it is in by its first vertex.
+  CHECK(!inspect(together(cube(V::Zero(), 0.5), cube(V::Constant(0.6), 0.45, true))).valid());
+  // A cavity that touches the part's own walls is one.
+  CHECK(inspect(together(cube(), cube(V(0.25, 0, 0), 0.25, true))).valid());
+}
+
+TEST_CASE("mesh: cavities that run through each other and take more than the part has") {
+  // Each fits into the part and has its first vertex outside the others.
+  const Mesh one = together(cube(), cube(V(0.05, 0.05, 0), 0.4, true));
+  CHECK(inspect(one).valid());
+  CHECK(!inspect(together(one, cube(V(-0.05, -0.04, 0), 0.4, true))).valid());
+}
+
 TEST_CASE_TEMPLATE("mesh: measures of a cube far from its origin", S, float, double) {
   const V centre(3, -2, 5);
   MeshData<S> data;

@@ -53,8 +53,10 @@ struct Parts {
 }
 
 /// A part that bounds material has positive volume and stands outside all others' material (winding number
-/// 0); one that bounds a cavity has negative volume and stands inside (winding number 1). Gives the first
-/// triangle of each part that does not. Precondition: every half-edge has a twin of the other direction.
+/// 0); one that bounds a cavity has negative volume and stands inside (winding number 1), within a part of
+/// larger volume. Where a part stands is asked at one vertex of it. Gives the first triangle of each part
+/// that does not; where all do and cavities take more than there is, for they run through each other, that
+/// of the least volume. Precondition: every half-edge has a twin of the other direction.
 template <Real S>
 [[nodiscard]] inline std::vector<std::uint32_t> wrong_parts(const MeshData<S>& mesh,
                                                             std::span<const std::uint32_t> twin) {
@@ -76,8 +78,19 @@ template <Real S>
       high[p] = high[p].cwiseMax(a).cwiseMax(b).cwiseMax(c);
     }
   }
+  // Could p be a cavity of q?
+  const auto fits = [&](std::size_t p, std::size_t q) {
+    return volume[q] > -volume[p] && (low[p].array() >= low[q].array()).all() &&
+           (high[p].array() <= high[q].array()).all();
+  };
   std::vector<std::uint32_t> wrong;
+  W total = 0;
+  std::size_t least = 0;
   for (std::size_t p = 0; p < count; ++p) {
+    total += volume[p];
+    if (volume[p] < volume[least]) least = p;
+    bool stands = volume[p] > 0;
+    for (std::size_t q = 0; q < count && !stands; ++q) stands = fits(p, q);
     const Vec3<W> point = corner(parts.begin[p], 0);
     W winding = 0;
     for (std::size_t q = 0; q < count; ++q) {
@@ -90,9 +103,11 @@ template <Real S>
     // The winding number is 1/2 where the vertex lies on the other part, which is no error: 0.75 is half way
     // from there to a whole number. A volume below 1e-12 of the box's is the sum's rounding (chosen).
     const W box = (high[p] - low[p]).norm();
-    if (std::abs(volume[p]) <= W(1e-12) * box * box * box || std::abs(winding - expected) > W(0.75))
+    if (!stands || std::abs(volume[p]) <= W(1e-12) * box * box * box ||
+        std::abs(winding - expected) > W(0.75))
       wrong.push_back(parts.triangles[parts.begin[p]]);
   }
+  if (wrong.empty() && !(total > 0)) wrong.push_back(parts.triangles[parts.begin[least]]);
   return wrong;
 }
 
