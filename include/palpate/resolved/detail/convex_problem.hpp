@@ -2,13 +2,16 @@
 #pragma once
 
 /// @file The two convex problems of a contact resolved at its points: pressures, and tractions at given
-/// pressures. Both by conjugate gradients in the set that is free, begun with the last tick's result.
+/// pressures.
 ///
 ///     pressures   q >= 0,  A q - d >= 0,  q.(A q - d) = 0                            Signorini
 ///     tractions   |t_i| <= g_i;  sticks: u_t = a;  slips: t_i = g_i along a - u_t     Coulomb, g = mu q
 ///
-/// A tick's state hardly differs from the last one's: some 3 iterations. A bound on them is kept; the
-/// residual says what is left. Source: [polonsky1999].
+/// Pressures by conjugate gradients on the loaded points, tractions by projected gradients with Barzilai and
+/// Borwein's step: where a tool slides the discs hold every point, and conjugate gradients would begin anew
+/// each time. Both begin with the last tick's result, from which a tick's hardly differs: some 3
+/// iterations. A bound on them is kept; the residual says what is left. Source: [polonsky1999],
+/// [barzilai1988].
 
 #include <palpate/core/aligned_list.hpp>
 
@@ -33,18 +36,13 @@ struct PressureLists {
 };
 
 /// Pressures for the depths d; `apply(q, y)` gives y = A q; tolerance on the norm [m]. q is the
-/// start and the result, r = A q - d.
+/// start and the result, with r = A q - d.
 template <class Apply>
 [[nodiscard]] Remainder solve_pressures(std::size_t n, PressureLists& lists, float tolerance, int iterations,
                                         const Apply& apply) noexcept {
   float *const q = lists.q.data(), *const r = lists.r.data(), *const p = lists.p.data(),
                *const y = lists.y.data();
   const float* const d = lists.d.data();
-  const auto residual = [&] {
-    apply(q, r);
-    for (std::size_t i = 0; i < n; ++i) r[i] -= d[i];
-  };
-  residual();
   float before = 1;
   bool restart = true;
   Remainder result;
@@ -82,61 +80,47 @@ template <class Apply>
       r[i] -= step * y[i];
     }
     restart = clamped || overlap2 > 0;
-    if (clamped) residual();
+    if (clamped) {
+      apply(q, r);
+      for (std::size_t i = 0; i < n; ++i) r[i] -= d[i];
+    }
   }
 }
 
 /// Lists of a solve, sized at set-up: tractions, their limits, anchors, displacements, and what the iteration
 /// needs, each along two tangents.
 struct TractionLists {
-  AlignedList<float> limit, s, t, as, at, us, ut, zs, zt, ps, pt, ys, yt;
+  AlignedList<float> limit, raised, s, t, as, at, us, ut, ps, pt, ys, yt;
+  float step = 0;  ///< the last tick's last; 0: none [1/m]
   void resize(std::size_t size) {
-    for (auto* list : {&limit, &s, &t, &as, &at, &us, &ut, &zs, &zt, &ps, &pt, &ys, &yt}) list->resize(size);
+    for (auto* list : {&limit, &raised, &s, &t, &as, &at, &us, &ut, &ps, &pt, &ys, &yt}) list->resize(size);
+  }
+  /// Moves the tractions of point i by (ds, dt), held within its disc; (ps, pt) is how far they went.
+  void move(std::size_t i, float ds, float dt) noexcept {
+    float ns = s[i] + ds, nt = t[i] + dt;
+    const float size2 = ns * ns + nt * nt;
+    if (size2 > limit[i] * limit[i]) {
+      const float shrink = limit[i] / std::sqrt(size2);
+      ns *= shrink, nt *= shrink;
+    }
+    ps[i] = ns - s[i], pt[i] = nt - t[i];
+    s[i] = ns, t[i] = nt;
   }
 };
 
-/// Tractions s, t within discs of radius `limit`, for the anchors as, at. us, ut: displacements by
-/// pressures and tractions; they are kept so. `apply(s, t, us, ut)`: displacements by tractions.
+/// Tractions s, t within discs of radius `limit`, for the anchors as, at. (s, t) within the discs is the
+/// start and the result, with (us, ut) the displacements by pressures and tractions. `apply(s, t, us, ut)`:
+/// displacements by tractions.
 template <class Apply>
 [[nodiscard]] Remainder solve_tractions(std::size_t n, TractionLists& lists, float tolerance, int iterations,
                                         const Apply& apply) noexcept {
-  float *const s = lists.s.data(), *const t = lists.t.data(), *const us = lists.us.data(),
-               *const ut = lists.ut.data(), *const zs = lists.zs.data(), *const zt = lists.zt.data(),
-               *const ps = lists.ps.data(), *const pt = lists.pt.data(), *const ys = lists.ys.data(),
-               *const yt = lists.yt.data();
-  const float *const limit = lists.limit.data(), *const as = lists.as.data(), *const at = lists.at.data();
-  // By (ps, pt), held within the discs; what has changed goes to (ys, yt). False where a disc held a point.
-  const auto move = [&](float step) {
-    bool within = true;
-    for (std::size_t i = 0; i < n; ++i) {
-      float ns = s[i] + step * ps[i], nt = t[i] + step * pt[i];
-      const float size2 = ns * ns + nt * nt;
-      if (size2 > limit[i] * limit[i]) {
-        const float shrink = limit[i] / std::sqrt(size2);
-        ns *= shrink, nt *= shrink;
-        within = false;
-      }
-      ys[i] = ns - s[i], yt[i] = nt - t[i];  // what apply() put there was added before
-      s[i] = ns, t[i] = nt;
-    }
-    return within;
-  };
-  const auto add_image = [&](float step) {
-    for (std::size_t i = 0; i < n; ++i) us[i] += step * ys[i], ut[i] += step * yt[i];
-  };
-  const auto follow = [&] {  // u of what has changed
-    for (std::size_t i = 0; i < n; ++i) ps[i] = ys[i], pt[i] = yt[i];
-    apply(ps, pt, ys, yt);
-    add_image(1);
-  };
-  for (std::size_t i = 0; i < n; ++i) ps[i] = pt[i] = 0;
-  if (!move(0)) follow();  // the last tick's tractions, within the new discs
-
-  float before = 1;
-  bool restart = true;
+  float *const us = lists.us.data(), *const ut = lists.ut.data(), *const ps = lists.ps.data(),
+               *const pt = lists.pt.data(), *const ys = lists.ys.data(), *const yt = lists.yt.data();
+  const float *const s = lists.s.data(), *const t = lists.t.data(), *const limit = lists.limit.data(),
+                     *const as = lists.as.data(), *const at = lists.at.data();
   Remainder result;
   for (;; ++result.iterations) {
-    float size2 = 0, mixed = 0;
+    float size2 = 0;
     for (std::size_t i = 0; i < n; ++i) {
       float gs = as[i] - us[i], gt = at[i] - ut[i];
       const float held2 = s[i] * s[i] + t[i] * t[i], outward = gs * s[i] + gt * t[i];
@@ -148,40 +132,19 @@ template <class Apply>
         gt -= outward / held2 * t[i];
       }
       size2 += gs * gs + gt * gt;
-      mixed += gs * zs[i] + gt * zt[i];
-      zs[i] = gs, zt[i] = gt;
     }
     result.norm = std::sqrt(size2);
     if (!(result.norm > tolerance) || result.iterations == iterations) return result;
-    const float beta = restart ? 0 : (std::max)((size2 - mixed) / before, 0.f);
-    before = size2;
-    float zp = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      ps[i] = limit[i] > 0 ? zs[i] + beta * ps[i] : 0;
-      pt[i] = limit[i] > 0 ? zt[i] + beta * pt[i] : 0;
-      zp += zs[i] * ps[i] + zt[i] * pt[i];
-    }
+    for (std::size_t i = 0; i < n; ++i)
+      lists.move(i, lists.step * (as[i] - us[i]), lists.step * (at[i] - ut[i]));
     apply(ps, pt, ys, yt);
-    float py = 0;
-    for (std::size_t i = 0; i < n; ++i) py += ps[i] * ys[i] + pt[i] * yt[i];
-    if (!(py > 0) || !(zp > 0)) {
-      if (restart) return result;
-      restart = true;
-      continue;
-    }
-    const float step = zp / py;
-    restart = false;
+    float pp = 0, py = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      const float ns = s[i] + step * ps[i], nt = t[i] + step * pt[i];
-      restart |= ns * ns + nt * nt > limit[i] * limit[i];
+      us[i] += ys[i], ut[i] += yt[i];
+      pp += ps[i] * ps[i] + pt[i] * pt[i];
+      py += ps[i] * ys[i] + pt[i] * yt[i];
     }
-    if (restart) {
-      move(step);
-      follow();
-    } else {
-      add_image(step);
-      move(step);
-    }
+    if (py > 0) lists.step = pp / py;
   }
 }
 

@@ -10,14 +10,15 @@
 /// X_i: where the point's load acts on the undeformed surface, m: the mean of both points' directions. k
 /// makes the sum over an even lattice equal to the integral of any smooth pressure, as in the corrected
 /// trapezoidal rule for 1/r: 3.900 for squares, 3.921 for hexagons. With the mean over a disc, 3.01, a ball
-/// on 50 points is 3.4 % too stiff, with this it is within 0.3 %. Source: [johnson1985], ch. 3;
-/// [marin2014].
+/// on 50 points is 3.4 % too stiff, with this it is within 0.3 %. K_ji = K_ij^T: pairs i > j are kept.
+/// Source: [johnson1985], ch. 3; [marin2014].
 
 #include <palpate/core/aligned_list.hpp>
 #include <palpate/core/pose.hpp>
 #include <palpate/core/simd.hpp>
 #include <palpate/core/simd_math.hpp>
 #include <palpate/core/simd_vec3.hpp>
+#include <palpate/core/unroll.hpp>
 
 #include <array>
 #include <cmath>
@@ -33,30 +34,41 @@ class PointSystem {
   using V = native_simd<float>;
   static constexpr float own_cell = 3.92f;
 
-  PointSystem(std::size_t capacity, bool has_friction) : has_friction_(has_friction) {
+  PointSystem(std::size_t capacity, float compressibility, bool has_friction)
+      : has_friction_(has_friction), b_(compressibility) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
-    for (auto* list : {&area_, &weight_}) list->resize(padded);
-    for (auto* list : {&x_at_, &x_, &n_}) list->resize(padded);
+    for (auto* list : {&depth, &area_, &per_width_, &group_weight_}) list->resize(padded);
+    for (auto* list : {&x_at_, &x_, &n_, &group_x_, &group_n_}) list->resize(padded);
     for (auto& axis : axis_) axis.resize(padded);
-    matrix_[0][0].resize(padded * capacity);
-    if (has_friction)
-      for (auto& row : matrix_)
-        for (auto& entry : row) entry.resize(padded * capacity);
+    for (std::size_t k = 0; k < (has_friction ? 3 : 1); ++k) {
+      back_[k].resize(padded);
+      for (std::size_t l = 0; l < (has_friction ? 3 : 1); ++l) matrix_[k][l].resize(padded * capacity);
+    }
     axes_.resize(capacity);
-    depth.resize(padded);
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
-  void clear() noexcept { size_ = 0; }
-  /// A point at x, `deep` beneath the surface along its inward normal n, with its cell's area. Precondition:
-  /// fewer than the capacity.
-  void add(const Vec3<float>& x, const Vec3<float>& n, float deep, float area) noexcept {
+  void clear() noexcept { size_ = groups_ = 0; }
+  /// A point at x, `deep` beneath the surface along its inward normal n, with its cell's area. Points of the
+  /// same `group` follow each other and lie side by side. Precondition: fewer than the capacity.
+  void add(const Vec3<float>& x, const Vec3<float>& n, float deep, float area, std::uint32_t group) noexcept {
     x_at_.set(size_, x);
     n_.set(size_, n);
     depth[size_] = deep;
     area_[size_] = area;
-    weight_[size_++] = deep * area;
+    const float weight = deep * area;
+    if (size_ == 0 || group != last_group_) {
+      last_group_ = group;
+      group_weight_[groups_] = 0;
+      for (auto* list : {&group_x_, &group_n_}) list->set(groups_, Vec3<float>::Zero());
+      ++groups_;
+    }
+    const std::size_t g = groups_ - 1;
+    group_weight_[g] += weight;
+    group_x_.set(g, group_x_[g] + weight * x);
+    group_n_.set(g, group_n_[g] + weight * n);
+    ++size_;
   }
   /// The direction of pressing, first and second tangent of point i, by column.
   [[nodiscard]] const Mat3<float>& axes(std::size_t i) const noexcept { return axes_[i]; }
@@ -65,44 +77,72 @@ class PointSystem {
   [[nodiscard]] Vec3<float> foot(std::size_t i) const noexcept { return x_[i]; }
 
   /// Directions, depths along them, and matrices of all points.
-  void build(float b) noexcept {
+  void build() noexcept {
     stride_ = padded<V>(size_);
     for (std::size_t i = size_; i < stride_; ++i) {
-      for (auto* list : {&x_at_, &x_}) list->set(i, Vec3<float>::Constant(1e3f));  // apart from all points
-      n_.set(i, Vec3<float>::Zero());
-      for (auto& axis : axis_) axis.set(i, Vec3<float>::Zero());
-      weight_[i] = area_[i] = 0;
+      for (auto* list : {&x_at_, &n_}) list->set(i, Vec3<float>::UnitX());
+      depth[i] = 0;
     }
     direct();
-    for (std::size_t j = 0; j < size_; ++j) column(j, b);
+    for (std::size_t j = 0; j < size_; ++j)
+      if (has_friction_)
+        column<3>(j);
+      else
+        column<1>(j);
   }
 
-  /// y = A q, the displacements along the first axes by forces along them.
-  void normal_displacements(const float* q, float* y) const noexcept {
-    for (std::size_t i = 0; i < stride_; i += V::size()) store(y + i, V{});
-    add(matrix_[0][0], q, y);
+  struct Axes {
+    std::size_t first, count;
+  };
+  static constexpr Axes pressing{0, 1}, tangents{1, 2};
+  /// To u along some axes of each point come the displacements by loads along some axes.
+  template <Axes To, Axes From>
+  void add(const std::array<const float*, From.count>& load, const std::array<float*, To.count>& u) noexcept {
+    for (std::size_t j = 0; j < size_; ++j) {
+      std::array<std::array<const float*, From.count>, To.count> there, back;  // K_ij and its transpose
+      unroll<To.count>([&](std::size_t k) PALPATE_INLINE_LAMBDA {
+        unroll<From.count>([&](std::size_t l) PALPATE_INLINE_LAMBDA {
+          there[k][l] = matrix_[To.first + k][From.first + l].data() + j * stride_;
+          back[k][l] = matrix_[From.first + l][To.first + k].data() + j * stride_;
+        });
+      });
+      std::array<V, To.count> of_others{};
+      std::array<V, From.count> own;
+      unroll<From.count>([&](std::size_t l) PALPATE_INLINE_LAMBDA { own[l] = V(load[l][j]); });
+      for (std::size_t i = j / V::size() * V::size(); i < stride_; i += V::size())
+        unroll<To.count>([&](std::size_t k) PALPATE_INLINE_LAMBDA {
+          V sum(u[k] + i);
+          unroll<From.count>([&](std::size_t l) PALPATE_INLINE_LAMBDA {
+            sum += own[l] * V(there[k][l] + i);
+            of_others[k] += V(load[l] + i) * V(back[k][l] + i);
+          });
+          store(u[k] + i, sum);
+        });
+      // Kept apart for now: a number that is written into u would hold up the registers that read it next.
+      unroll<To.count>([&](std::size_t k) PALPATE_INLINE_LAMBDA { back_[k][j] = reduce(of_others[k]); });
+    }
+    for (std::size_t k = 0; k < To.count; ++k)
+      for (std::size_t j = 0; j < size_; ++j) u[k][j] += back_[k][j];
+    if constexpr (To.first == From.first) {
+      const float cell = own_cell * (To.first == 0 ? 1 + b_ : 1.5f + b_ / 2);
+      for (std::size_t k = 0; k < To.count; ++k)
+        for (std::size_t j = 0; j < size_; ++j) u[k][j] += cell * per_width_[j] * load[k][j];
+    }
   }
-  /// Displacements along the tangents by tractions.
-  void tangential_displacements(const float* s, const float* t, float* us, float* ut) const noexcept {
-    for (std::size_t i = 0; i < stride_; i += V::size()) store(us + i, V{}), store(ut + i, V{});
-    add(matrix_[1][1], s, us), add(matrix_[1][2], t, us);
-    add(matrix_[2][1], s, ut), add(matrix_[2][2], t, ut);
-  }
-  void add_normal_by_tractions(const float* s, const float* t, float* y) const noexcept {
-    add(matrix_[0][1], s, y), add(matrix_[0][2], t, y);
-  }
-  void add_tangential_by_pressures(const float* q, float* us, float* ut) const noexcept {
-    add(matrix_[1][0], q, us), add(matrix_[2][0], q, ut);
+  /// A step of tractions that is stable for a single point, and short of what all could take [1/m].
+  [[nodiscard]] float flexible_step() const noexcept {
+    return 1 / ((1.5f + b_ / 2) * own_cell * per_width_[0]);
   }
   /// The displacement along n at a further point of the surface by the pressures q.
-  [[nodiscard]] float normal_displacement_at(const float* q, float b, const Vec3<float>& x,
-                                             const Vec3<float>& n, float area) const noexcept {
-    Mat3<float> axes = Mat3<float>::Zero();
-    axes.col(0) = n;
+  [[nodiscard]] float normal_displacement_at(const float* q, const Vec3<float>& x, const Vec3<float>& n,
+                                             float area) const noexcept {
+    const Kernel kernel(b_);
     V sum{};
-    for (std::size_t i = 0; i < stride_; i += V::size())
-      entries<1>(i, axes, between(i, x, area), b,
-                 [&](std::size_t, std::size_t, const V& value) { sum += V(q + i) * value; });
+    for (std::size_t i = 0; i < stride_; i += V::size()) {
+      const SimdVec3<V> mi = axis_[0].load(i);
+      const Pair pair = between(i, x, mi, each(n), area);
+      sum += V(q + i) * dot(mi, kernel(pair, each(n)));
+    }
     return reduce(sum);
   }
 
@@ -110,16 +150,23 @@ class PointSystem {
   /// contact's normals, for the surface turns from its own normal to the tool's, and this is halfway; against
   /// finite elements a ball pressed by half its radius is 3.6 % too stiff with the mean and 9.5 % with n.
   /// Other contacts of the tool, some widths away, hardly count.
-  [[nodiscard]] Vec3<float> direction(const Vec3<float>& x, const Vec3<float>& n) const noexcept {
-    const SimdVec3<V> here = each(x);
-    SimdVec3<V> total{V{}, V{}, V{}};
-    for (std::size_t i = 0; i < stride_; i += V::size()) {
-      const SimdVec3<V> r = x_at_.load(i) - here;
-      const V far = 1.f + per_size2_ * dot(r, r);
-      total += (V(&weight_[i]) / (far * far)) * n_.load(i);
+  template <SimdOrReal W>
+  [[nodiscard]] PALPATE_INLINE SimdVec3<W> direction(const SimdVec3<W>& x,
+                                                     const SimdVec3<W>& n) const noexcept {
+    SimdVec3<W> total{W(0.f), W(0.f), W(0.f)};
+    for (std::size_t g = 0; g < groups_; ++g) {
+      const SimdVec3<W> r = each<W>(group_x_[g]) - x;
+      const W far = 1.f + per_size2_ * dot(r, r);
+      total += (1.f / (far * far)) * each<W>(group_n_[g]);
     }
-    const Vec3<float> m = Vec3<float>(reduce(total.x), reduce(total.y), reduce(total.z)).normalized();
-    return m.dot(n) > 0.5f ? m : n;  // never more than 60 degrees off the surface's normal
+    const SimdVec3<W> m = inverse_sqrt(dot(total, total)) * total;
+    const auto is_near = dot(m, n) > W(0.5f);  // never more than 60 degrees off the surface's normal
+    return {select(is_near, m.x, n.x), select(is_near, m.y, n.y), select(is_near, m.z, n.z)};
+  }
+
+  [[nodiscard]] Vec3<float> direction_at(const Vec3<float>& x, const Vec3<float>& n) const noexcept {
+    const SimdVec3<float> m = direction(each<float>(x), each<float>(n));
+    return {m.x, m.y, m.z};
   }
 
   AlignedList<float> depth;  ///< along the first axes [m]
@@ -133,96 +180,105 @@ class PointSystem {
     [[nodiscard]] PALPATE_INLINE SimdVec3<V> load(std::size_t i) const noexcept {
       return {V(&x[i]), V(&y[i]), V(&z[i])};
     }
+    PALPATE_INLINE void store(std::size_t i, const SimdVec3<V>& v) noexcept {
+      v.x.copy_to(&x[i]), v.y.copy_to(&y[i]), v.z.copy_to(&z[i]);
+    }
   };
   struct Pair {
     V inverse;      // 1/r
-    SimdVec3<V> e;  // to i
+    SimdVec3<V> e;  // from j to i
+    SimdVec3<V> m;  // mean of both directions of pressing
   };
-  [[nodiscard]] static PALPATE_INLINE SimdVec3<V> each(const Vec3<float>& v) noexcept {
-    return {V(v.x()), V(v.y()), V(v.z())};
+  template <SimdOrReal W = V>
+  [[nodiscard]] static PALPATE_INLINE SimdVec3<W> each(const Vec3<float>& v) noexcept {
+    return {W(v.x()), W(v.y()), W(v.z())};
   }
 
   // Axes, depths along the first of them, and feet.
   void direct() noexcept {
-    float sum = 0;
-    for (std::size_t i = 0; i < size_; ++i) sum += area_[i];
-    per_size2_ = 1 / (2 * sum);
-    for (std::size_t j = 0; j < size_; ++j) axes_[j].col(0) = direction(x_at_[j], n_[j]);
-    for (std::size_t j = 0; j < size_; ++j) {
-      const Vec3<float> m = axes_[j].col(0), n = n_[j];
-      depth[j] /= m.dot(n);
-      x_.set(j, x_at_[j] - depth[j] * m);
-      axes_[j].col(1) = perpendicular(m);
-      axes_[j].col(2) = m.cross(axes_[j].col(1));
-      for (std::size_t k = 0; k < 3; ++k) axis_[k].set(j, axes_[j].col(Eigen::Index(k)));
+    float area = 0;
+    for (std::size_t i = 0; i < size_; ++i) {
+      area += area_[i];
+      per_width_[i] = 1 / std::sqrt(area_[i]);
+    }
+    per_size2_ = 1 / (2 * area);
+    for (std::size_t g = 0; g < groups_; ++g) group_x_.set(g, group_x_[g] / group_weight_[g]);
+    for (std::size_t i = 0; i < stride_; i += V::size()) {
+      const SimdVec3<V> n = n_.load(i), m = direction(x_at_.load(i), n);
+      const V deep = V(&depth[i]) / dot(m, n);
+      deep.copy_to(&depth[i]);
+      x_.store(i, x_at_.load(i) - deep * m);
+      axis_[0].store(i, m);
+    }
+    for (std::size_t i = size_; i < stride_; ++i) {  // what fills up presses on no point
+      x_.set(i, Vec3<float>::Constant(1e3f));
+      for (auto& axis : axis_) axis.set(i, Vec3<float>::Zero());
+    }
+    for (std::size_t i = 0; i < size_; ++i) {
+      Mat3<float>& axes = axes_[i];
+      axes.col(0) = axis_[0][i];
+      axes.col(1) = perpendicular(axis_[0][i]);
+      axes.col(2) = axes.col(0).cross(axes.col(1));
+      for (std::size_t k = 1; k < 3; ++k) axis_[k].set(i, axes.col(Eigen::Index(k)));
     }
   }
 
-  [[nodiscard]] PALPATE_INLINE Pair between(std::size_t i, const Vec3<float>& x, float area) const noexcept {
+  // Points i .. on, pressing along mi, seen from a point at x that presses along m.
+  [[nodiscard]] PALPATE_INLINE Pair between(std::size_t i, const Vec3<float>& x, const SimdVec3<V>& mi,
+                                            const SimdVec3<V>& m, float area) const noexcept {
     const SimdVec3<V> r = x_.load(i) - each(x);
     // Loads of a steep wall act at nearly one position: no nearer than half a cell, or the matrix is not
     // positive.
     const V inverse = inverse_sqrt((max)(dot(r, r), V(0.26f * area)));
-    return {inverse, inverse * r};
+    return {inverse, inverse * r, V(0.5f) * (mi + m)};
   }
-  // a_ik . K a_jl for the axes k, l < count, to entry(k, l, value).
-  template <std::size_t count, class Entry>
-  PALPATE_INLINE void entries(std::size_t i, const Mat3<float>& aj, const Pair& pair, float b,
-                              const Entry& entry) const noexcept {
-    std::array<V, count> ei, ej;
-    std::array<std::array<V, count>, count> along;  // a_ik . a_jl
-    for (std::size_t k = 0; k < count; ++k) {
-      const SimdVec3<V> ai = axis_[k].load(i);
-      ei[k] = dot(ai, pair.e);
-      ej[k] = dot(pair.e, each(aj.col(Eigen::Index(k))));
-      for (std::size_t l = 0; l < count; ++l) along[k][l] = dot(ai, each(aj.col(Eigen::Index(l))));
+  struct Kernel {
+    V b, plus, minus;  // 1 + b, 1 - b
+    explicit PALPATE_INLINE Kernel(float c) noexcept : b(c), plus(1 + c), minus(1 - c) {}
+    // K_ij f.
+    [[nodiscard]] PALPATE_INLINE SimdVec3<V> operator()(const Pair& p, const SimdVec3<V>& f) const noexcept {
+      const V along = dot(p.e, f);
+      return (plus * p.inverse) * f + (p.inverse * (minus * along - b * dot(p.m, f))) * p.e +
+             (p.inverse * b * along) * p.m;
     }
-    for (std::size_t k = 0; k < count; ++k)
-      for (std::size_t l = 0; l < count; ++l) {
-        V sum = (1 + b) * along[k][l] + (1 - b) * (ei[k] * ej[l]);
-        if (b > 0)  // m e^T - e m^T with the mean of both first axes
-          sum += (b / 2) * ((along[k][0] + (k == 0 ? 1.f : 0.f)) * ej[l] -
-                            ei[k] * (along[0][l] + (l == 0 ? 1.f : 0.f)));
-        entry(k, l, pair.inverse * sum);
-      }
-  }
-  void column(std::size_t j, float b) noexcept {
+  };
+  template <std::size_t count>
+  void column(std::size_t j) noexcept {
     const Vec3<float> x = x_[j];
-    const Mat3<float> axes = axes_[j];
-    for (std::size_t i = 0; i < stride_; i += V::size()) {
-      const Pair pair = between(i, x, area_[j]);
-      const auto put = [&](std::size_t k, std::size_t l, const V& value) {
-        store(&matrix_[k][l][j * stride_ + i], value);
-      };
-      if (has_friction_)
-        entries<3>(i, axes, pair, b, put);
-      else
-        entries<1>(i, axes, pair, b, put);
+    std::array<SimdVec3<V>, count> axes;
+    for (std::size_t l = 0; l < count; ++l) axes[l] = each(axes_[j].col(Eigen::Index(l)));
+    std::array<std::array<float*, count>, count> to;
+    for (std::size_t k = 0; k < count; ++k)
+      for (std::size_t l = 0; l < count; ++l) to[k][l] = matrix_[k][l].data() + j * stride_;
+    const float area = area_[j];
+    const Kernel kernel(b_);
+    const std::size_t first = j / V::size() * V::size();
+    for (std::size_t i = first; i < stride_; i += V::size()) {
+      std::array<SimdVec3<V>, count> at;
+      unroll<count>([&](std::size_t k) PALPATE_INLINE_LAMBDA { at[k] = axis_[k].load(i); });
+      const Pair pair = between(i, x, at[0], axes[0], area);
+      unroll<count>([&](std::size_t l) PALPATE_INLINE_LAMBDA {
+        const SimdVec3<V> u = kernel(pair, axes[l]);
+        unroll<count>([&](std::size_t k) PALPATE_INLINE_LAMBDA { store(to[k][l] + i, dot(at[k], u)); });
+      });
     }
-    const std::size_t own = j * stride_ + j;
-    const float cell = own_cell / std::sqrt(area_[j]);
-    matrix_[0][0][own] = (1 + b) * cell;
-    if (!has_friction_) return;
-    for (std::size_t k = 0; k < 3; ++k)
-      for (std::size_t l = k == 0 ? 1 : 0; l < 3; ++l)
-        matrix_[k][l][own] = k == l ? (1.5f + b / 2) * cell : 0;
-  }
-  void add(const AlignedList<float>& matrix, const float* load, float* u) const noexcept {
-    for (std::size_t j = 0; j < size_; ++j) {
-      if (load[j] == 0) continue;
-      const float* const column = &matrix[j * stride_];
-      for (std::size_t i = 0; i < stride_; i += V::size()) store(u + i, V(u + i) + load[j] * V(column + i));
-    }
+    for (std::size_t i = first; i <= j; ++i)
+      for (std::size_t k = 0; k < count; ++k)
+        for (std::size_t l = 0; l < count; ++l) to[k][l][i] = 0;
   }
 
-  std::size_t size_ = 0, stride_ = 0;
+  std::size_t size_ = 0, stride_ = 0, groups_ = 0;
+  std::uint32_t last_group_ = 0;
   bool has_friction_;
+  float b_ = 0;          // 1 - 2 nu
+  float per_size2_ = 1;  // of direct()
   std::vector<Mat3<float>> axes_;
-  AlignedList<float> area_, weight_;
-  float per_size2_ = 1;   // of direct()
-  Vectors x_at_, x_, n_;  // the points, their feet, normals
+  AlignedList<float> area_, per_width_, group_weight_;
+  Vectors x_at_, x_, n_;       // the points, their feet, normals
+  Vectors group_x_, group_n_;  // sums over a group by depth and area; x: the mean
   std::array<Vectors, 3> axis_;
-  std::array<std::array<AlignedList<float>, 3>, 3> matrix_;  // by axes of i and j, each by column
+  std::array<std::array<AlignedList<float>, 3>, 3> matrix_;  // by axes of i and j, i > j, each by column
+  std::array<AlignedList<float>, 3> back_;                   // of add()
 };
 
 }  // namespace palpate::detail

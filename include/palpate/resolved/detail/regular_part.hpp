@@ -31,7 +31,7 @@ class RegularPart {
         index_(max_nodes, 0),
         kept_(max_nodes * max_nodes, Mat3<float>::Zero()) {
     weights_.resize(capacity);
-    const std::size_t padded = AlignedList<float>::padded(3 * max_nodes);
+    const std::size_t padded = AlignedList<float>::padded(4 * max_nodes);
     load_.resize(padded);
     u_.resize(padded);
     matrix_.resize(padded * 3 * max_nodes);
@@ -52,7 +52,7 @@ class RegularPart {
   }
   /// The matrix between the nodes in use.
   void build() noexcept {
-    stride_ = padded<V>(3 * used_.size());
+    stride_ = padded<Group>(4 * used_.size());
     if (!changed_ && std::equal(used_.begin(), used_.end(), was_used_.begin(), was_used_.end())) return;
     changed_ = false;
     for (std::size_t l = 0; l < used_.size(); ++l)
@@ -60,9 +60,10 @@ class RegularPart {
         float* const column = &matrix_[(3 * l + c) * stride_];
         for (std::size_t k = 0; k < used_.size(); ++k) {
           const Mat3<float>& w = kept(used_[k], used_[l]);
-          for (std::size_t r = 0; r < 3; ++r) column[3 * k + r] = w(Eigen::Index(r), Eigen::Index(c));
+          for (std::size_t r = 0; r < 3; ++r) column[4 * k + r] = w(Eigen::Index(r), Eigen::Index(c));
+          column[4 * k + 3] = 0;
         }
-        for (std::size_t i = 3 * used_.size(); i < stride_; ++i) column[i] = 0;
+        for (std::size_t i = 4 * used_.size(); i < stride_; ++i) column[i] = 0;
       }
   }
 
@@ -103,7 +104,8 @@ class RegularPart {
   }
 
  private:
-  using V = PointSystem::V;
+  using Group = simd_group<float>;
+  using Four = Simd<float, 4>;  // a vector of space in a register
   static constexpr std::uint16_t none = 0xffff;
   struct Weight {
     std::uint16_t node;  // among those in use
@@ -174,22 +176,25 @@ class RegularPart {
   template <class Load>
   void gather(const Load& load) noexcept {
     float *const f = load_.data(), *const u = u_.data();
-    for (std::size_t i = 0; i < stride_; i += V::size()) store(f + i, V{}), store(u + i, V{});
+    for (std::size_t i = 0; i < stride_; i += Group::size()) store(f + i, Group{});
     for (std::size_t i = 0; i < size_; ++i) {
       const Vec3<float> P = load(i);
-      if (P == Vec3<float>::Zero()) continue;
-      for (const Weight& w : weights_[i])
-        for (std::size_t r = 0; r < 3; ++r) f[3 * w.node + r] += w.value * P[Eigen::Index(r)];
+      const Four P4(P.x(), P.y(), P.z(), 0.f);
+      for (const Weight& w : weights_[i]) store(f + 4 * w.node, Four(f + 4 * w.node) + Four(w.value) * P4);
     }
-    for (std::size_t j = 0; j < 3 * used_.size(); ++j)
-      for (std::size_t i = 0; i < stride_; i += V::size())
-        store(u + i, V(u + i) + f[j] * V(&matrix_[j * stride_ + i]));
+    for (std::size_t i = 0; i < stride_; i += Group::size()) {  // some of u at a time through all columns
+      Group sum{};
+      const float* column = &matrix_[i];
+      for (std::size_t j = 0; j < used_.size(); ++j)
+        for (std::size_t c = 0; c < 3; ++c, column += stride_)
+          sum += simd_factor<float>(f[4 * j + c]) * Group(column);
+      store(u + i, sum);
+    }
   }
   [[nodiscard]] Vec3<float> at(const Weights& weights) const noexcept {
-    Vec3<float> sum = Vec3<float>::Zero();
-    for (const Weight& w : weights)
-      sum += w.value * Vec3<float>(u_[3 * w.node], u_[3 * w.node + 1], u_[3 * w.node + 2]);
-    return sum;
+    Four sum{};
+    for (const Weight& w : weights) sum += Four(w.value) * Four(&u_[4 * w.node]);
+    return {sum[0], sum[1], sum[2]};
   }
   void scatter(const PointSystem& system, float* us, float* ut) const noexcept {
     for (std::size_t i = 0; i < size_; ++i) {
@@ -206,7 +211,7 @@ class RegularPart {
   std::vector<Mat3<float>> kept_;       // between slots
   std::vector<Weights> weights_;        // of the points
   FixedVector<std::uint16_t, max_nodes> used_, was_used_;
-  AlignedList<float> load_, u_, matrix_;  // of the nodes in use; the matrix by column
+  AlignedList<float> load_, u_, matrix_;  // of the nodes in use, four numbers each; the matrix by column
   std::size_t size_ = 0, stride_ = 0;
   std::uint32_t tick_ = 2;
   bool changed_ = true;

@@ -39,7 +39,7 @@ class ResolvedState {
         touching_(capacity),
         inside_(capacity),
         contacts_(capacity),
-        system_(capacity, has_friction),
+        system_(capacity, static_cast<float>(1 - 2 * body.nu()), has_friction),
         regular_(regular_part(body, capacity)) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
     pressure_.resize(padded);
@@ -49,7 +49,7 @@ class ResolvedState {
   void reset() noexcept {
     contacts_.clear();
     tick_ += 2;  // no point has touched in the tick before
-    slides_ = false;
+    forget();
   }
   [[nodiscard]] bool has_contact() const noexcept { return !contacts_.empty(); }
   [[nodiscard]] std::span<const PointContact<S>> contacts() const noexcept {
@@ -81,7 +81,7 @@ class ResolvedState {
     residual_ = {};
     const Pose<S> before = std::exchange(pose_, X);
     if (touching_.empty()) {
-      slides_ = false;
+      forget();
       return;
     }
     float deepest = 0, size2 = 0;
@@ -109,6 +109,7 @@ class ResolvedState {
   using RegularPart = typename RegularPartOf<Compliance>::type;
   /// Points whose gap was less than this share of the depth are solved for at once.
   static constexpr float near = 0.05f;
+  static constexpr int max_turns = 4;
 
   struct Point {
     std::uint32_t tick = 0;                    // when it touched
@@ -131,12 +132,13 @@ class ResolvedState {
     else
       return {};
   }
-  [[nodiscard]] static float compressibility(const Force& force) noexcept {
-    return static_cast<float>(1 - 2 * force.compliance().nu());
-  }
   [[nodiscard]] std::size_t size() const noexcept { return inside_.size(); }
   [[nodiscard]] Vec3<float> relative(const Vec3<S>& x) const noexcept {
     return (x - origin_).template cast<float>();
+  }
+  void forget() noexcept {
+    slides_ = false;
+    if constexpr (has_friction) traction_.step = 0;
   }
   [[nodiscard]] Point& point(std::size_t i) noexcept { return points_[touching_[inside_[i]].point]; }
 
@@ -145,9 +147,10 @@ class ResolvedState {
     origin_ = touching_[0].x;
     for (const std::uint32_t c : inside_) {
       const Touching& at = touching_[c];
-      system_.add(relative(at.x), at.m, at.depth, static_cast<float>(tool.area(at.point)));
+      system_.add(relative(at.x), at.m, at.depth, static_cast<float>(tool.area(at.point)),
+                  at.point / static_cast<std::uint32_t>(batch_size));  // a leaf of the tool's points
     }
-    system_.build(compressibility(force));
+    system_.build();
     if constexpr (RegularPart::active) {
       regular_.clear();
       for (std::size_t i = 0; i < size(); ++i)
@@ -172,46 +175,77 @@ class ResolvedState {
     const int iterations = force.params().iterations;
     const float per_norm = static_cast<float>(force.params().tolerance) / tolerance;
     const std::size_t n = size();
-    const auto normal = [&](const float* q, float* y) noexcept {
-      system_.normal_displacements(q, y);
-      if constexpr (RegularPart::active) regular_.add_normal(system_, q, y);
+    const auto pressures = [&] {
+      const Remainder left = solve_pressures(n, pressure_, tolerance, iterations,
+                                             [&](const float* q, float* y) noexcept { normal_by(q, y); });
+      residual_.iterations += left.iterations;
+      return left;
     };
-    float mu = 0;
-    // Pressures and tractions in turns: they hardly depend on each other.
-    for (int turn = 0; turn < (has_friction ? 4 : 1); ++turn) {
-      for (std::size_t i = 0; i < n; ++i) pressure_.d[i] = system_.depth[i];
-      if constexpr (has_friction) {
-        float* const y = pressure_.y.data();
-        for (std::size_t i = 0; i < system_.stride(); ++i) y[i] = 0;
-        system_.add_normal_by_tractions(traction_.s.data(), traction_.t.data(), y);
-        if constexpr (RegularPart::active)
-          regular_.add_normal_by_tractions(system_, traction_.s.data(), traction_.t.data(), y);
-        for (std::size_t i = 0; i < n; ++i) pressure_.d[i] -= y[i];
-      }
-      const Remainder pressed = solve_pressures(n, pressure_, tolerance, iterations, normal);
-      residual_.iterations += pressed.iterations;
-      residual_.relative = pressed.norm * per_norm;
-      if constexpr (has_friction) {
-        if (turn > 0 && pressed.iterations == 0) return;  // what tractions change is within the tolerance
-        const auto tangential = [&](const float* s, const float* t, float* us, float* ut) noexcept {
-          system_.tangential_displacements(s, t, us, ut);
-          if constexpr (RegularPart::active) regular_.add_tangential(system_, s, t, us, ut);
-        };
-        tangential(traction_.s.data(), traction_.t.data(), traction_.us.data(), traction_.ut.data());
-        system_.add_tangential_by_pressures(pressure_.q.data(), traction_.us.data(), traction_.ut.data());
-        if constexpr (RegularPart::active)
-          regular_.add_tangential_by_pressures(system_, pressure_.q.data(), traction_.us.data(),
-                                               traction_.ut.data());
-        if (turn == 0) {
-          mu = coefficient(force, friction);
-          begin_anchors();
+    normal_by(pressure_.q.data(), pressure_.r.data());
+    for (std::size_t i = 0; i < n; ++i) {
+      pressure_.d[i] = system_.depth[i];
+      pressure_.r[i] -= pressure_.d[i];
+    }
+    if constexpr (!has_friction) {
+      residual_.relative = pressures().norm * per_norm;
+    } else {
+      for (std::size_t i = 0; i < n; ++i) traction_.raised[i] = 0;
+      // Pressures and tractions in turns: they hardly depend on each other.
+      float mu = 0;
+      Remainder dragged;
+      for (int turn = 0;; ++turn) {
+        raise_by_tractions();
+        const Remainder pressed = pressures();
+        residual_.relative = (std::max)(pressed.norm, dragged.norm) * per_norm;
+        // Done where what the tractions change is within the tolerance.
+        if (turn == max_turns || (turn > 0 && pressed.iterations == 0)) return;
+        if (turn == 0) mu = coefficient(force, friction);
+        for (std::size_t i = 0; i < n; ++i) {
+          traction_.limit[i] = mu * pressure_.q[i];
+          traction_.move(i, 0, 0);
         }
-        for (std::size_t i = 0; i < n; ++i) traction_.limit[i] = mu * pressure_.q[i];
-        const Remainder dragged = solve_tractions(n, traction_, tolerance, iterations, tangential);
+        begin_tractions();
+        if (turn == 0) begin_anchors();
+        dragged = solve_tractions(n, traction_, tolerance, iterations,
+                                  [&](const float* s, const float* t, float* us, float* ut) noexcept {
+                                    tangential_by(s, t, us, ut);
+                                  });
         residual_.iterations += dragged.iterations;
-        residual_.relative = (std::max)(residual_.relative, dragged.norm * per_norm);
       }
     }
+  }
+  void clear(float* u) const noexcept {
+    for (std::size_t i = 0; i < system_.stride(); ++i) u[i] = 0;
+  }
+  void normal_by(const float* q, float* y) noexcept {
+    clear(y);
+    system_.template add<PointSystem::pressing, PointSystem::pressing>({q}, {y});
+    if constexpr (RegularPart::active) regular_.add_normal(system_, q, y);
+  }
+  void tangential_by(const float* s, const float* t, float* us, float* ut) noexcept {
+    clear(us), clear(ut);
+    system_.template add<PointSystem::tangents, PointSystem::tangents>({s, t}, {us, ut});
+    if constexpr (RegularPart::active) regular_.add_tangential(system_, s, t, us, ut);
+  }
+  // Depths and residuals of the pressures, with what the tractions raise.
+  void raise_by_tractions() noexcept {
+    float* const y = pressure_.y.data();
+    clear(y);
+    const float *const s = traction_.s.data(), *const t = traction_.t.data();
+    system_.template add<PointSystem::pressing, PointSystem::tangents>({s, t}, {y});
+    if constexpr (RegularPart::active) regular_.add_normal_by_tractions(system_, s, t, y);
+    for (std::size_t i = 0; i < size(); ++i) {
+      pressure_.d[i] = system_.depth[i] - y[i];
+      pressure_.r[i] += y[i] - std::exchange(traction_.raised[i], y[i]);
+    }
+  }
+  void begin_tractions() noexcept {
+    float *const us = traction_.us.data(), *const ut = traction_.ut.data();
+    tangential_by(traction_.s.data(), traction_.t.data(), us, ut);
+    const float* const q = pressure_.q.data();
+    system_.template add<PointSystem::tangents, PointSystem::pressing>({q}, {us, ut});
+    if constexpr (RegularPart::active) regular_.add_tangential_by_pressures(system_, q, us, ut);
+    if (traction_.step == 0) traction_.step = system_.flexible_step();
   }
 
   /// Takes in points that the surface has not given way to. False where there are none.
@@ -229,11 +263,11 @@ class ResolvedState {
       Point& p = points_[at.point];
       // Gaps change little in a tick: each is looked at in every eighth.
       if ((tick_ + at.point) % 8 != 0) continue;
-      const Vec3<float> m = system_.direction(relative(at.x), at.m);
+      const Vec3<float> m = system_.direction_at(relative(at.x), at.m);
       const float depth = at.depth / m.dot(at.m);
       const Vec3<S> foot = at.x - (depth * m).template cast<S>();
-      float sunk = system_.normal_displacement_at(pressure_.q.data(), compressibility(force), relative(foot),
-                                                  m, static_cast<float>(tool.area(at.point)));
+      float sunk = system_.normal_displacement_at(pressure_.q.data(), relative(foot), m,
+                                                  static_cast<float>(tool.area(at.point)));
       if constexpr (RegularPart::active)
         sunk += regular_.normal_at(force.compliance(), foot.template cast<double>(),
                                    points_[at.point].triangle, m);

@@ -4,22 +4,15 @@
 /// @file  Weights of a face's vertices, split by a contact, in vector registers.
 
 #include <palpate/core/simd.hpp>
+#include <palpate/core/unroll.hpp>
 #include <palpate/luo_xiao/interpolation/partition.hpp>
 
 #include <array>
 #include <cstddef>
 #include <limits>
 #include <type_traits>
-#include <utility>
 
 namespace palpate::detail {
-
-/// work(0) .. work(N - 1), written out: compilers keep short loops at -O2, and their arrays in memory.
-template <std::size_t N, class Work>
-PALPATE_INLINE void unroll(const Work& work) noexcept {
-  [&]<std::size_t... i>(std::index_sequence<i...>)
-      PALPATE_INLINE_LAMBDA { (work(i), ...); }(std::make_index_sequence<N>{});
-}
 
 /// Terms to interpolate: of each corner of a face, and of the contact.
 template <Real S, std::size_t Terms>
