@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # check_readme.sh ROOT: programs shown in pages are those of examples/, which are built and run: in README.md
-# examples/short/main.cpp and examples/minimal/main.cpp, in docs/device.md examples/openhaptics/main.cpp.
+# examples/short/main.cpp and examples/minimal/main.cpp, in docs/device.md examples/openhaptics/main.cpp, in
+# docs/resolved.md examples/resolved/main.cpp.
 set -eu
 cd "$1"
 compare() {  # PAGE N PROGRAM MARK: the page's Nth code block is what stands between two lines `// [MARK]`
@@ -15,3 +16,4 @@ compare() {  # PAGE N PROGRAM MARK: the page's Nth code block is what stands bet
 compare README.md 1 examples/short/main.cpp readme
 compare README.md 2 examples/minimal/main.cpp minimal
 compare docs/device.md 1 examples/openhaptics/main.cpp openhaptics
+compare docs/resolved.md 1 examples/resolved/main.cpp resolved
