@@ -14,11 +14,14 @@
 #include <palpate/geometry/sphere.hpp>
 #include <palpate/law/force/linear.hpp>
 #include <palpate/law/force/tabulated.hpp>
+#include <palpate/resolved/contact_samples.hpp>
+#include <palpate/resolved/response_compliance.hpp>
 #include <palpate/solver/contact_solver.hpp>
 #include <palpate/touch.hpp>
 
 #include <support/hand_scripts.hpp>
 #include <support/pins.hpp>
+#include <support/response_fields.hpp>
 #include <support/response_meshes.hpp>
 #include <support/solvers.hpp>
 
@@ -210,9 +213,57 @@ Scene ball_on_field(double K) {
                K / 1000);
 }
 
-const std::vector<Scene (*)(double)> all_scenes{point_on_block,  point_on_egg,  region_on_egg,
-                                                regions_on_egg,  table_on_mesh, coupled_on_samples,
-                                                region_on_bulge, ball_on_field};
+/// Contact resolved at the tool's points: a half-space behind `object`, E' = E/(1 - nu^2) [Pa].
+template <class Object>
+Scene resolved(const char* name, const Object& object, const MeshData<double>& tool, double spacing,
+               double E_plane, double above) {
+  using Elastic = ElasticContact<double, HalfSpace>;
+  using Solver = ContactSolver<Object, Elastic, CoulombFriction<double>, ContactPoints<128>>;
+  return scene(name,
+               std::make_shared<Solver>(typename Solver::Parts{
+                   .object = object,
+                   .tool = ToolPoints<double>(contact_samples(TriangleMesh<double>(tool), spacing),
+                                              {.contact_area = 1e-4}),
+                   .force = Elastic({.compliance = HalfSpace({.E = 0.75 * E_plane, .nu = 0.5})}),
+                   .friction = friction}),
+               V::Zero(), on(object, V(0.01, 0.06, 0.005), above));
+}
+/// A square punch: F = 1.152 E' a d.
+Scene punch_on_block(double K) {
+  const double a = 5e-3;
+  return resolved("resolved punch, half-space", block, Box<double>({.half = V::Constant(a / 2)}).mesh(8),
+                  a / 3.6, K / (1.152 * a), a / 2);
+}
+/// A ball: F = 4/3 E' sqrt(R d) d by Hertz, K d at 2 mm.
+Scene resolved_ball_on_egg(double K) {
+  const double R = 15e-3;
+  return resolved("resolved ball, ellipsoid", egg, Sphere<double>({.radius = R}).mesh(1000), 2.5e-3,
+                  0.75 * K / std::sqrt(R * 2e-3), R);
+}
+/// The same on a response field, by the workspace's scale s: F = K d at d = 2 mm of the hand, s d of the scene,
+/// but for the body's own part.
+Scene resolved_ball_on_field(double K) {
+  static const auto field = std::make_shared<const ResponseField>(test::ellipsoid_field(0.49, 300));
+  using Elastic = ElasticContact<double, ResponseCompliance>;
+  using Solver = ContactSolver<Ellipsoid<double>, Elastic, CoulombFriction<double>, ContactPoints<128>>;
+  const double R = 15e-3, E_plane = field->E() / (1 - 0.49 * 0.49);
+  return scene(
+      "resolved ball, response field",
+      std::make_shared<Solver>(typename Solver::Parts{
+          .object = egg,
+          .tool = ToolPoints<double>(
+              contact_samples(TriangleMesh<double>(Sphere<double>({.radius = R}).mesh(1000)), 1.2e-3),
+              {.contact_area = 1e-4}),
+          .force = Elastic({.compliance = ResponseCompliance(field)}),
+          .friction = friction}),
+      V::Zero(), on(egg, V(0.01, 0.05, 0.005), R),
+      std::pow(K / (4. / 3 * E_plane * std::sqrt(R * 2e-3)), 2. / 3));
+}
+
+const std::vector<Scene (*)(double)> all_scenes{
+    point_on_block, point_on_egg,         region_on_egg,         regions_on_egg,
+    table_on_mesh,  coupled_on_samples,   region_on_bulge,       ball_on_field,
+    punch_on_block, resolved_ball_on_egg, resolved_ball_on_field};
 
 // An arm with 0.3 N s/m, 0.1 N of friction.
 LoopDevice plain(double rate, int delay) {
