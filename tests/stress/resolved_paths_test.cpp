@@ -8,11 +8,12 @@
 ///
 ///     |dF| <= K |dx|,   |dtau| <= K |dx| L,   K = 2 E' sqrt(A/pi)
 ///
-/// with |dx| the largest displacement of any tool point, A the area of the loaded cells, K the stiffness of a
-/// flat punch of that area (no rigid tool with so much in contact is stiffer but a slender one, a sideways push
-/// is softer, and whole cells are more than the contact), L the farthest point from the centre of mass. With
-/// friction 1 + mu times that, for its limit follows the pressure. It is checked at three step lengths: where
-/// the step is halved the bound is, and a jump would stay.
+/// with |dx| the largest displacement of any tool point and what two ticks' tolerance leaves of displacements
+/// (2e-4 of the depths' norm), A the area of the loaded cells, K the stiffness of a flat punch of that area (no
+/// rigid tool with so much in contact is stiffer but a slender one, a sideways push is softer, and whole cells
+/// are more than the contact), L the farthest point from the centre of mass. With friction 1 + mu times that,
+/// for its limit follows the pressure. It is checked at three step lengths: where the step is halved the bound
+/// is, and a jump would stay.
 ///
 /// *Energy.* Without friction a closed path of 1,000 ticks and more gives no work: less than 0.5 % of what goes to
 /// and fro on a half-space (points come in up to eight ticks late: with 500 ticks 1 %). On a body with a
@@ -165,15 +166,18 @@ void go_round(Solver& solver, const Path& path, int ticks, Worst& worst) {
       ++worst.touching;
       worst.sliding += c.mode == ContactMode::sliding;
     }
+    bool left = false, right = false, middle = false;
+    double depth2 = 0;
+    for (const auto& p : solver.state().points()) {
+      depth2 += p.depth * p.depth;
+      const double x = tool.point(p.point).x();
+      left |= x<-2e-3, right |= x> 2e-3, middle |= std::abs(x) < 1e-3;
+    }
     const double K = 2 * E_plane * std::sqrt((std::max)(area, area_before) / pi);
+    step += 2 * solver.force_law().params().tolerance * std::sqrt(depth2);  // of this tick and the last
     if (K > 0) {
       worst.force = (std::max)(worst.force, (now.force - last.force).norm() / (K * step));
       worst.torque = (std::max)(worst.torque, (now.torque - last.torque).norm() / (K * step * arm));
-    }
-    bool left = false, right = false, middle = false;
-    for (const auto& p : solver.state().points()) {
-      const double x = tool.point(p.point).x();
-      left |= x<-2e-3, right |= x> 2e-3, middle |= std::abs(x) < 1e-3;
     }
     worst.apart += left && right && !middle, worst.joined += left && right && middle;
     const Eigen::AngleAxis<double> spin(Mat3<double>(X.rotation * before.rotation.transpose()));
