@@ -10,6 +10,7 @@
 /// | `HalfSpaceDeformation` | elastic: half-spaces in series | a plausible shape without any set-up |
 /// | `ResponseFieldDeformation` | elastic, by boundary elements at set-up | shape and force must be right |
 /// | `ResponseBallDeformation` | the same under a ball | the tool is a ball |
+/// | `ResponseLoadDeformation` | the same under loads | contact is resolved (docs/resolved.md) |
 /// | `NoDeformation` | the undeformed one | absent: forces only |
 ///
 /// `DisplacementField` is the output stage that models share: displacements of corners to vertices in your
@@ -30,9 +31,25 @@ concept HasWriteRest = requires(D& model, const VertexBuffer<float>& f, const Ve
   { model.write_rest(d) } noexcept;
 };
 
+namespace detail {
+template <class D>
+struct DrawnByOf {
+  using type = ContactState<typename D::Scalar>;
+};
+template <class D>
+  requires requires { typename D::Drawn; }
+struct DrawnByOf<D> {
+  using type = typename D::Drawn;
+};
+}  // namespace detail
+
+/// What a model draws: `D::Drawn` (SurfaceLoad), or else regions' contacts.
+template <class D>
+using DrawnBy = typename detail::DrawnByOf<D>::type;
+
 template <class D>  // what moved since the last write, into the same buffer
-concept HasWrite = requires(D& model, std::span<const ContactState<typename D::Scalar>> contacts,
-                            const VertexBuffer<float>& f, const VertexBuffer<double>& d) {
+concept HasWrite = requires(D& model, std::span<const DrawnBy<D>> contacts, const VertexBuffer<float>& f,
+                            const VertexBuffer<double>& d) {
   { model.write(contacts, f) } noexcept -> std::same_as<Moved<typename D::Scalar>>;
   { model.write(contacts, d) } noexcept -> std::same_as<Moved<typename D::Scalar>>;
 };

@@ -104,7 +104,8 @@ class ContactSolver {
     [[nodiscard]] std::span<const ContactState<S>> contacts() const noexcept {
       return {this->contacts_.begin(), this->contacts_.size()};
     }
-    using State::TickMemory::points;    ///< of a resolved contact: forces at the tool's points
+    using State::TickMemory::loads;     ///< of a resolved contact, to a list: what a shape is drawn from
+    using State::TickMemory::points;    ///< likewise: forces at the tool's points
     using State::TickMemory::residual;  ///< what its conditions lack after the last tick
     /// Object or laws are others now: the next tick is worked out, though the pose is the last one's.
     void refresh() noexcept { this->last_.ticks = (std::min)(this->last_.ticks, 1); }
@@ -181,9 +182,9 @@ class ContactSolver {
 
   /// Forgets all contact, as after a calibration of the device.
   void reset() noexcept { state_.reset(); }
-  /// Writes what moved since the last call under these contacts, of any tick and from any thread.
+  /// Writes what moved since the last call under these contacts (or loads), of any tick and from any thread.
   template <Real T>
-  Moved<S> draw(std::span<const ContactState<S>> contacts, const VertexBuffer<T>& out) noexcept
+  Moved<S> draw(std::span<const DrawnBy<Deformation>> contacts, const VertexBuffer<T>& out) noexcept
     requires(Deformation::active)
   {
     return deformation_.write(contacts, out);

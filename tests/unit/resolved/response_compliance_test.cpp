@@ -77,7 +77,9 @@ TEST_CASE("without friction a closed path gives no energy: pressed, rolled over 
     // Down at one place, up at another, back through the air.
     const V x(0.012 * std::sin(t), 0.04 + R - 0.0015 + 0.003 * std::sin(t + 0.8) + 0.001,
               0.006 * std::cos(t));
-    const V force = solver.tick(at(x)).wrench.force;
+    const auto result = solver.tick(at(x));
+    CHECK(!has(result.status, Status::non_finite_result));
+    const V force = result.wrench.force;
     if (i > 0) {
       const double w = 0.5 * (force + before).dot(x - x_before);
       work += w;
@@ -89,8 +91,8 @@ TEST_CASE("without friction a closed path gives no energy: pressed, rolled over 
   const std::size_t allocations = heap.allocations();
   CHECK(allocations == 0);
   CHECK(spent > 1e-4);
-  // The regular part changes along the surface, and what follows from that is not in the force.
-  CHECK(std::abs(work) <= 0.01 * spent);
+  // The mean gradient of the regular part is in the force, what m changes with the pose is not: 0.5 %.
+  CHECK(std::abs(work) <= 0.006 * spent);
 }
 
 TEST_CASE("a field that is missing is refused") { CHECK_THROWS_AS(ResponseCompliance(nullptr), SetupError); }

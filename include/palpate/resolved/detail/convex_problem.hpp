@@ -27,6 +27,12 @@ struct Remainder {
   float norm = 0;  ///< of what violates the conditions [m]
 };
 
+/// How well a tick has met the conditions of contact.
+struct Residual {
+  int iterations = 0;
+  float relative = 0;  ///< norm of what violates them, over the norm of the depths
+};
+
 /// Lists of a solve, sized at set-up.
 struct PressureLists {
   AlignedList<float> q, d, r, p, y;

@@ -49,16 +49,18 @@ class PointSystem {
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
-  void clear() noexcept { size_ = groups_ = 0; }
-  /// A point at x, `deep` beneath the surface along its inward normal n, with its cell's area. Points of the
-  /// same `group` follow each other and lie side by side. Precondition: fewer than the capacity.
-  void add(const Vec3<float>& x, const Vec3<float>& n, float deep, float area, std::uint32_t group) noexcept {
-    x_at_.set(size_, x);
-    n_.set(size_, n);
-    depth[size_] = deep;
-    area_[size_] = area;
+  void clear() noexcept {
+    size_ = groups_ = 0;
+    deepest_ = volume_ = 0;
+  }
+  /// Any point beneath the surface counts for the direction of pressing: x, inward normal n, depth along it,
+  /// area of its cell. Points of the same `group` follow each other and lie side by side.
+  void touch(const Vec3<float>& x, const Vec3<float>& n, float deep, float area,
+             std::uint32_t group) noexcept {
     const float weight = deep * area;
-    if (size_ == 0 || group != last_group_) {
+    deepest_ = (std::max)(deepest_, deep);
+    volume_ += weight;
+    if (groups_ == 0 || group != last_group_) {
       last_group_ = group;
       group_weight_[groups_] = 0;
       for (auto* list : {&group_x_, &group_n_}) list->set(groups_, Vec3<float>::Zero());
@@ -68,11 +70,18 @@ class PointSystem {
     group_weight_[g] += weight;
     group_x_.set(g, group_x_[g] + weight * x);
     group_n_.set(g, group_n_[g] + weight * n);
-    ++size_;
+  }
+  /// A point that is solved for, after all touch(). Precondition: fewer than the capacity.
+  void add(const Vec3<float>& x, const Vec3<float>& n, float deep, float area) noexcept {
+    x_at_.set(size_, x);
+    n_.set(size_, n);
+    depth[size_] = deep;
+    area_[size_++] = area;
   }
   /// The direction of pressing, first and second tangent of point i, by column.
   [[nodiscard]] const Mat3<float>& axes(std::size_t i) const noexcept { return axes_[i]; }
   [[nodiscard]] Vec3<float> normal(std::size_t i) const noexcept { return n_[i]; }
+  [[nodiscard]] float area(std::size_t i) const noexcept { return area_[i]; }
   /// Where the load of point i acts on the undeformed surface.
   [[nodiscard]] Vec3<float> foot(std::size_t i) const noexcept { return x_[i]; }
 
@@ -149,7 +158,8 @@ class PointSystem {
   /// The direction in which a point at x presses, where the surface's inward normal is n: the mean of the
   /// contact's normals, for the surface turns from its own normal to the tool's, and this is halfway; against
   /// finite elements a ball pressed by half its radius is 3.6 % too stiff with the mean and 9.5 % with n.
-  /// Other contacts of the tool, some widths away, hardly count.
+  /// Weights are what is pressed in, so that m is continuous in the pose. Other contacts of the tool, some
+  /// widths away, hardly count.
   template <SimdOrReal W>
   [[nodiscard]] PALPATE_INLINE SimdVec3<W> direction(const SimdVec3<W>& x,
                                                      const SimdVec3<W>& n) const noexcept {
@@ -196,12 +206,8 @@ class PointSystem {
 
   // Axes, depths along the first of them, and feet.
   void direct() noexcept {
-    float area = 0;
-    for (std::size_t i = 0; i < size_; ++i) {
-      area += area_[i];
-      per_width_[i] = 1 / std::sqrt(area_[i]);
-    }
-    per_size2_ = 1 / (2 * area);
+    for (std::size_t i = 0; i < size_; ++i) per_width_[i] = 1 / std::sqrt(area_[i]);
+    per_size2_ = deepest_ / (2 * volume_);
     for (std::size_t g = 0; g < groups_; ++g) group_x_.set(g, group_x_[g] / group_weight_[g]);
     for (std::size_t i = 0; i < stride_; i += V::size()) {
       const SimdVec3<V> n = n_.load(i), m = direction(x_at_.load(i), n);
@@ -270,8 +276,9 @@ class PointSystem {
   std::size_t size_ = 0, stride_ = 0, groups_ = 0;
   std::uint32_t last_group_ = 0;
   bool has_friction_;
-  float b_ = 0;          // 1 - 2 nu
-  float per_size2_ = 1;  // of direct()
+  float b_ = 0;  // 1 - 2 nu
+  float deepest_ = 0, volume_ = 0,
+        per_size2_ = 1;  // the volume pressed over the depth: a ball's contact area
   std::vector<Mat3<float>> axes_;
   AlignedList<float> area_, per_width_, group_weight_;
   Vectors x_at_, x_, n_;       // the points, their feet, normals

@@ -31,6 +31,7 @@ class RegularPart {
         index_(max_nodes, 0),
         kept_(max_nodes * max_nodes, Mat3<float>::Zero()) {
     weights_.resize(capacity);
+    w_.resize(capacity);
     const std::size_t padded = AlignedList<float>::padded(4 * max_nodes);
     load_.resize(padded);
     u_.resize(padded);
@@ -70,11 +71,11 @@ class RegularPart {
   /// y += w along the normals of forces q along them.
   void add_normal(const PointSystem& system, const float* q, float* y) noexcept {
     gather_pressures(system, q);
-    for (std::size_t i = 0; i < size_; ++i) y[i] += system.axes(i).col(0).dot(at(weights_[i]));
+    for (std::size_t i = 0; i < size_; ++i) y[i] += system.axes(i).col(0).dot(of(i));
   }
   void add_normal_by_tractions(const PointSystem& system, const float* s, const float* t, float* y) noexcept {
     gather_tractions(system, s, t);
-    for (std::size_t i = 0; i < size_; ++i) y[i] += system.axes(i).col(0).dot(at(weights_[i]));
+    for (std::size_t i = 0; i < size_; ++i) y[i] += system.axes(i).col(0).dot(of(i));
   }
   void add_tangential(const PointSystem& system, const float* s, const float* t, float* us,
                       float* ut) noexcept {
@@ -93,6 +94,53 @@ class RegularPart {
     gather([&](std::size_t i) {
       return Vec3<float>(s[i] * system.axes(i).col(1) + t[i] * system.axes(i).col(2));
     });
+  }
+  /// The nodes' displacements by load(i) at the points.
+  template <class Load>
+  void gather(const Load& load) noexcept {
+    float *const f = load_.data(), *const u = u_.data();
+    for (std::size_t i = 0; i < stride_; i += Group::size()) store(f + i, Group{});
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Vec3<float> P = load(i);
+      const Four P4(P.x(), P.y(), P.z(), 0.f);
+      for (const Weight& w : weights_[i]) store(f + 4 * w.node, Four(f + 4 * w.node) + Four(w.value) * P4);
+    }
+    for (std::size_t i = 0; i < stride_; i += Group::size()) {  // some of u at a time through all columns
+      Group sum{};
+      const float* column = &matrix_[i];
+      for (std::size_t j = 0; j < used_.size(); ++j)
+        for (std::size_t c = 0; c < 3; ++c, column += stride_)
+          sum += simd_factor<float>(f[4 * j + c]) * Group(column);
+      store(u + i, sum);
+    }
+  }
+  /// w at point i, of what was gathered last.
+  [[nodiscard]] Vec3<float> of(std::size_t i) const noexcept { return at(weights_[i]); }
+  /// Gradient along the surface of n.w, n the surface's own normal, w by load(i) at the points: by regression
+  /// over the pressures q. One gradient for all is continuous in the pose; the load mesh's own jumps from
+  /// triangle to triangle.
+  template <class Load>
+  [[nodiscard]] Vec3<float> slope(const PointSystem& system, const float* q, const Load& load) noexcept {
+    gather(load);
+    Vec3<float> mean_x = Vec3<float>::Zero(), m = Vec3<float>::Zero();
+    float sum = 0, mean_w = 0;
+    for (std::size_t i = 0; i < size_; ++i) {
+      w_[i] = system.normal(i).dot(of(i));
+      sum += q[i], mean_w += q[i] * w_[i];
+      mean_x += q[i] * system.foot(i), m += q[i] * system.axes(i).col(0);
+    }
+    if (!(sum > 0)) return Vec3<float>::Zero();
+    mean_x /= sum, mean_w /= sum, m.normalize();
+    Mat3<float> spread = Mat3<float>::Zero();
+    Vec3<float> with_w = Vec3<float>::Zero();
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Vec3<float> x = tangential<float>(system.foot(i) - mean_x, m);
+      spread +=
+          q[i] / sum * (x * x.transpose() + (system.area(i) / 12) * Mat3<float>::Identity());  // a cell's own
+      with_w += q[i] / sum * (w_[i] - mean_w) * x;
+    }
+    const float size = spread.trace();  // powers of small numbers would be 0
+    return (spread / size).inverse() * (with_w / size);
   }
   /// w along m at a further point, of what was gathered last.
   template <class Body>
@@ -172,25 +220,6 @@ class RegularPart {
     }
   }
 
-  // The nodes' loads, of load(i) at the points, and their displacements.
-  template <class Load>
-  void gather(const Load& load) noexcept {
-    float *const f = load_.data(), *const u = u_.data();
-    for (std::size_t i = 0; i < stride_; i += Group::size()) store(f + i, Group{});
-    for (std::size_t i = 0; i < size_; ++i) {
-      const Vec3<float> P = load(i);
-      const Four P4(P.x(), P.y(), P.z(), 0.f);
-      for (const Weight& w : weights_[i]) store(f + 4 * w.node, Four(f + 4 * w.node) + Four(w.value) * P4);
-    }
-    for (std::size_t i = 0; i < stride_; i += Group::size()) {  // some of u at a time through all columns
-      Group sum{};
-      const float* column = &matrix_[i];
-      for (std::size_t j = 0; j < used_.size(); ++j)
-        for (std::size_t c = 0; c < 3; ++c, column += stride_)
-          sum += simd_factor<float>(f[4 * j + c]) * Group(column);
-      store(u + i, sum);
-    }
-  }
   [[nodiscard]] Vec3<float> at(const Weights& weights) const noexcept {
     Four sum{};
     for (const Weight& w : weights) sum += Four(w.value) * Four(&u_[4 * w.node]);
@@ -198,7 +227,7 @@ class RegularPart {
   }
   void scatter(const PointSystem& system, float* us, float* ut) const noexcept {
     for (std::size_t i = 0; i < size_; ++i) {
-      const Vec3<float> w = at(weights_[i]);
+      const Vec3<float> w = of(i);
       us[i] += system.axes(i).col(1).dot(w);
       ut[i] += system.axes(i).col(2).dot(w);
     }
@@ -210,6 +239,7 @@ class RegularPart {
   std::vector<std::uint16_t> index_;    // of a slot, among those in use
   std::vector<Mat3<float>> kept_;       // between slots
   std::vector<Weights> weights_;        // of the points
+  std::vector<float> w_;                // of slope()
   FixedVector<std::uint16_t, max_nodes> used_, was_used_;
   AlignedList<float> load_, u_, matrix_;  // of the nodes in use, four numbers each; the matrix by column
   std::size_t size_ = 0, stride_ = 0;

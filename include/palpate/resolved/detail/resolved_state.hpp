@@ -3,11 +3,13 @@
 
 /// @file A tick of a resolved contact: from touching points to forces at them.
 
+#include <palpate/contact/surface_load.hpp>
 #include <palpate/core/absent.hpp>
 #include <palpate/core/pose.hpp>
 #include <palpate/detection/tool_points.hpp>
 #include <palpate/resolved/contact_points.hpp>
 #include <palpate/resolved/detail/bounded_list.hpp>
+#include <palpate/resolved/detail/contact_area.hpp>
 #include <palpate/resolved/detail/convex_problem.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/resolved/elastic_contact.hpp>
@@ -20,12 +22,6 @@
 #include <vector>
 
 namespace palpate::detail {
-
-/// How well a tick has met the conditions of contact.
-struct Residual {
-  int iterations = 0;
-  float relative = 0;  ///< norm of what violates them, over the norm of the depths
-};
 
 /// What a tick leaves for the next: loads at the points, and where those that stick hold the surface.
 template <Real S, ContactCompliance Compliance, bool has_friction_>
@@ -55,8 +51,25 @@ class ResolvedState {
   [[nodiscard]] std::span<const PointContact<S>> contacts() const noexcept {
     return {contacts_.begin(), contacts_.size()};
   }
+  /// The last tick's loads on the body, as many as the list has room for.
+  template <class List>
+  void loads(List& out) const noexcept {
+    out.clear();
+    for (std::size_t i = 0; has_contact() && i < size() && !out.full(); ++i) {
+      const Touching& at = touching_[inside_[i]];
+      const Point& p = points_[at.point];
+      if (!p.loaded) continue;
+      out.push_back({origin_ + system_.foot(i).template cast<S>(), system_.axes(i).col(0).template cast<S>(),
+                     per_load_ * p.load.template cast<S>(), static_cast<S>(system_.area(i))});
+    }
+  }
   [[nodiscard]] const Residual& residual() const noexcept { return residual_; }
   [[nodiscard]] bool slides() const noexcept { return slides_; }
+
+  /// Area that touches [m^2].
+  [[nodiscard]] float area() noexcept {
+    return contact_area(system_, pressure_, [this](std::size_t i) { return is_at_rim(i); });
+  }
 
   void begin_tick() noexcept {
     ++tick_;
@@ -145,10 +158,12 @@ class ResolvedState {
   void build(const Force& force, const ToolPoints<S>& tool) noexcept {
     system_.clear();
     origin_ = touching_[0].x;
+    for (const Touching& at : touching_)
+      system_.touch(relative(at.x), at.m, at.depth, static_cast<float>(tool.area(at.point)),
+                    at.point / static_cast<std::uint32_t>(batch_size));  // a leaf of the tool's points
     for (const std::uint32_t c : inside_) {
       const Touching& at = touching_[c];
-      system_.add(relative(at.x), at.m, at.depth, static_cast<float>(tool.area(at.point)),
-                  at.point / static_cast<std::uint32_t>(batch_size));  // a leaf of the tool's points
+      system_.add(relative(at.x), at.m, at.depth, static_cast<float>(tool.area(at.point)));
     }
     system_.build();
     if constexpr (RegularPart::active) {
@@ -318,35 +333,50 @@ class ResolvedState {
   }
 
   void finish(const Force& force, const ToolPoints<S>& tool) noexcept {
-    const S scale = static_cast<S>(4 * std::numbers::pi * force.shear_modulus());
+    const S scale = per_load_ = static_cast<S>(4 * std::numbers::pi * force.shear_modulus());
     bool any_sticks = false;
     for (const Touching& c : touching_) points_[c.point].loaded = false;
+    for (std::size_t i = 0; i < size(); ++i) store_load(i);
+    Vec3<float> slope = Vec3<float>::Zero();
+    if constexpr (RegularPart::active)
+      slope = regular_.slope(system_, pressure_.q.data(), [this](std::size_t i) { return point(i).load; });
     for (std::size_t i = 0; i < size(); ++i) {
       const Touching& at = touching_[inside_[i]];
       Point& p = point(i);
-      store_load(i);
       const float q = pressure_.q[i];
       p.sunk = pressure_.r[i] + at.depth;
       p.loaded = q > 0;
       if (!p.loaded) continue;
       bool sticks = false;
+      float slips = 1;
       if constexpr (has_friction) {
         const Mat3<float>& axes = system_.axes(i);
         const float s = traction_.s[i], t = traction_.t[i];
-        sticks = s * s + t * t < 0.9999f * traction_.limit[i] * traction_.limit[i];
+        const float held2 = s * s + t * t, limit2 = traction_.limit[i] * traction_.limit[i];
+        sticks = held2 < 0.9999f * limit2;
+        if (sticks) slips = held2 / limit2;
         p.anchor = sticks ? Vec3<float>(traction_.as[i] * axes.col(1) + traction_.at[i] * axes.col(2))
                           : Vec3<float>(traction_.us[i] * axes.col(1) + traction_.ut[i] * axes.col(2));
       }
       any_sticks |= sticks;
-      // The tool feels minus the gradient of the energy: of the depth along the direction of pressing.
+      // The tool feels minus the gradient of the energy: of the depth along the direction of pressing, and of
+      // the regular part as far as the point slips; where it sticks the body goes with it.
       const Vec3<float> m = system_.axes(i).col(0), n = system_.normal(i);
-      const Vec3<float> felt = p.load + q * (n / n.dot(m) - m);
+      const Vec3<float> felt = p.load + q * (n / n.dot(m) - m - slips * slope);
       contacts_.push_back({at.point, sticks, at.x, -at.m.template cast<S>(), -scale * felt.template cast<S>(),
                            scale * static_cast<S>(q) / tool.area(at.point), static_cast<S>(at.depth)});
     }
     slides_ = has_friction && !contacts_.empty() && !any_sticks;
   }
 
+  // Next to a point that is in the body's undeformed shape and does not touch.
+  [[nodiscard]] bool is_at_rim(std::size_t i) const noexcept {
+    const Touching& at = touching_[inside_[i]];
+    const S near2 = S(2.25) * static_cast<S>(system_.area(i));  // between first and second neighbours
+    return std::any_of(touching_.begin(), touching_.end(), [&](const Touching& c) {
+      return !points_[c.point].loaded && (c.x - at.x).squaredNorm() < near2;
+    });
+  }
   std::vector<Point> points_;
   BoundedList<Touching> touching_;
   BoundedList<std::uint32_t> inside_;  // of touching_, rising: those that are solved for
@@ -358,6 +388,7 @@ class ResolvedState {
   Residual residual_;
   Pose<S> pose_;
   Vec3<S> origin_;
+  S per_load_ = 0;  // 4 pi mu [Pa]
   std::uint32_t tick_ = 1;
   bool slides_ = false;
 

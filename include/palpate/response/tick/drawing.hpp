@@ -39,15 +39,19 @@ inline void rest_on_sphere(const DrawnContact& c, const Vec3<double>& at, double
 
 /// What is drawn: contacts, and their near fields at the mesh's vertices, one contact after the other, by
 /// coordinate.
-struct DrawnContacts {
-  std::span<const DrawnContact> contact;
+template <class Contact>
+struct DrawnList {
+  std::span<const Contact> contact;
   const float* own;
 };
+using DrawnContacts = DrawnList<DrawnContact>;
 
 /// Holds the buffers; the field must outlive it.
-template <std::size_t Capacity>
+template <std::size_t Capacity, class Contact = DrawnContact>
 class ResponseDrawing {
  public:
+  using Contacts = DrawnList<Contact>;
+
   explicit ResponseDrawing(const ResponseField& field)
       : field_(&field),
         total_(4 * field.stride(), 0.f),
@@ -56,12 +60,12 @@ class ResponseDrawing {
         corrections_(field.mid_edges(), field.stride()) {}
 
   /// `total`: the field at the boundary element mesh's vertices, by coordinate.
-  void read(const float* total, const DrawnContacts& contacts) noexcept;
+  void read(const float* total, const Contacts& contacts) noexcept;
 
   /// Calls emit(slot, u) with a SIMD vector of displacements from that slot on, until all of a display have
   /// theirs. An `emit` that can be assigned is copied and put back.
   template <class Emit>
-  void each(const ResponseDisplay& display, const DrawnContacts& contacts, Emit& emit) noexcept {
+  void each(const ResponseDisplay& display, const Contacts& contacts, Emit& emit) noexcept {
     find_close(display, contacts);
     spread(display, emit);
     for (std::size_t i = 0; i < display.spans().size(); ++i)
@@ -70,7 +74,7 @@ class ResponseDrawing {
 
  private:
   using Wide = simd_at_most<float, 8>;
-  using Correction = typename MidEdgeCorrection<Capacity>::OfTriangle;
+  using Correction = typename MidEdgeCorrection<Capacity, Contact>::OfTriangle;
   static constexpr std::uint32_t wide = Wide::size(), four = Simd4::size();
 
   // Where near fields are exact.
@@ -80,12 +84,12 @@ class ResponseDrawing {
   // Above 0 for a sphere that comes within reach of a contact. `S`: a number or a `Simd`.
   template <class S>
   [[nodiscard]] PALPATE_INLINE S within_reach(const S& x, const S& y, const S& z, const S& radius,
-                                              const NearField& k) const noexcept {
+                                              const auto& k) const noexcept {
     const S rx = x - k.x.x(), ry = y - k.x.y(), rz = z - k.x.z(), most = radius + (k.a + reach());
     return most * most - (rx * rx + ry * ry + rz * rz);
   }
   // Marks the spans that may have vertices within reach of a contact.
-  void find_close(const ResponseDisplay& display, const DrawnContacts& contacts) noexcept;
+  void find_close(const ResponseDisplay& display, const Contacts& contacts) noexcept;
   [[nodiscard]] PALPATE_INLINE bool is_close(const ResponseDisplay& display,
                                              std::size_t span) const noexcept {
     return close_[span] > 0 && !field_->mesh().fixed_triangle[display.spans()[span].triangle];
@@ -123,7 +127,7 @@ class ResponseDrawing {
     return u;
   }
   // The same of contact c's near field.
-  [[nodiscard]] Interpolant own_over(std::size_t triangle, const DrawnContacts& contacts,
+  [[nodiscard]] Interpolant own_over(std::size_t triangle, const Contacts& contacts,
                                      std::size_t c) const noexcept {
     const std::size_t n = field_->stride();
     const auto at = [n, own = contacts.own + 3 * n * c](std::uint32_t v) {
@@ -161,7 +165,7 @@ class ResponseDrawing {
   // A span that is close to a contact: the same with the near fields exact, fading to their interpolants at
   // the end of their reach.
   template <class Emit>
-  void refine(const ResponseDisplay& display, std::size_t s, const DrawnContacts& contacts,
+  void refine(const ResponseDisplay& display, std::size_t s, const Contacts& contacts,
               Emit& emit) const noexcept {
     const ResponseDisplay::Span& span = display.spans()[s];
     const Refined refined(*this, display, s, contacts);
@@ -177,7 +181,7 @@ class ResponseDrawing {
     std::array<Interpolant, Capacity> own;
 
     Refined(const ResponseDrawing& drawing, const ResponseDisplay& display, std::size_t s,
-            const DrawnContacts& contacts) noexcept {
+            const Contacts& contacts) noexcept {
       const std::uint32_t triangle = display.spans()[s].triangle;
       total = drawing.total_over(triangle);
       const ResponseDisplay::Spheres& around = display.around();
@@ -193,7 +197,7 @@ class ResponseDrawing {
   // One SIMD vector of slots from i on.
   template <class V, class Emit>
   PALPATE_INLINE void refine_at(const ResponseDisplay& display, std::uint32_t i, const Refined& span,
-                                const DrawnContacts& contacts, Emit& emit) const noexcept {
+                                const Contacts& contacts, Emit& emit) const noexcept {
     const auto from = [i](const float* list) { return load<V>(list + i); };
     const V b1 = from(display.b1()), b2 = from(display.b2());
     const SimdVec3<V> at{from(display.x()), from(display.y()), from(display.z())};
@@ -201,7 +205,7 @@ class ResponseDrawing {
     const float reach = this->reach();
     bool on_patch = false;
     for (auto c : span.close) {
-      const NearField& k = contacts.contact[c].near;
+      const auto& k = contacts.contact[c].near;
       const V rx = at.x - k.x.x(), ry = at.y - k.x.y(), rz = at.z - k.x.z(), r2 = rx * rx + ry * ry + rz * rz;
       const float nearest = reduce_min(r2);
       if (nearest >= (reach + k.a) * (reach + k.a)) continue;
@@ -213,8 +217,9 @@ class ResponseDrawing {
       u.y += weight * (exact.y - drawn.y);
       u.z += weight * (exact.z - drawn.z);
     }
-    if (on_patch)
-      for (auto c : span.close) follow(contacts.contact[c], at, reach, u);
+    if constexpr (Contact::follows_tool)
+      if (on_patch)
+        for (auto c : span.close) follow(contacts.contact[c], at, reach, u);
     for_each_chunk<4>(u.x, [&](auto k, const Simd4& x) PALPATE_INLINE_LAMBDA {
       emit(i + k, SimdVec3<Simd4>{x, chunk<4, k>(u.y), chunk<4, k>(u.z)});
     });
@@ -259,16 +264,16 @@ class ResponseDrawing {
   std::vector<float> total_;   // the field at the mesh's vertices, four numbers each
   std::vector<float> raised_;  // the same, with the mean of the mid-edge corrections where they are left out
   std::vector<float> close_;   // by span of the display: above 0 within reach of a contact
-  MidEdgeCorrection<Capacity> corrections_;
+  MidEdgeCorrection<Capacity, Contact> corrections_;
 };
 
-template <std::size_t Capacity>
-void ResponseDrawing<Capacity>::read(const float* total, const DrawnContacts& contacts) noexcept {
+template <std::size_t Capacity, class Contact>
+void ResponseDrawing<Capacity, Contact>::read(const float* total, const Contacts& contacts) noexcept {
   const std::size_t n = field_->stride();
   for (std::size_t v = 0; v < n; v += Simd4::size())
     store_by_fours(&total_[4 * v], Simd4(total + v), Simd4(total + n + v), Simd4(total + 2 * n + v));
   double d2 = 0;
-  for (const DrawnContact& c : contacts.contact) d2 = (std::max)(d2, c.tool.displacement2());
+  for (const Contact& c : contacts.contact) d2 = (std::max)(d2, c.displacement2());
   const auto reach = static_cast<float>(tick::mid_edge_reach * field_->mesh().length);
   corrections_.read(total, contacts.own, n, contacts.contact, reach);
   corrections_.correct_vertices(
@@ -276,9 +281,9 @@ void ResponseDrawing<Capacity>::read(const float* total, const DrawnContacts& co
       reach, static_cast<float>(tick::max_vertex_correction * std::sqrt(d2)), raised_.data());
 }
 
-template <std::size_t Capacity>
-void ResponseDrawing<Capacity>::find_close(const ResponseDisplay& display,
-                                           const DrawnContacts& contacts) noexcept {
+template <std::size_t Capacity, class Contact>
+void ResponseDrawing<Capacity, Contact>::find_close(const ResponseDisplay& display,
+                                                    const Contacts& contacts) noexcept {
   const ResponseDisplay::Spheres& around = display.around();
   for (std::size_t i = 0; i < around.radius.size(); i += Simd4::size()) {
     const auto from = [i](const std::vector<float>& list) { return Simd4(&list[i]); };

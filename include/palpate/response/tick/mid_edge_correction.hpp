@@ -20,7 +20,7 @@ namespace detail {
 
 /// The mid-edge corrections of one tick's field within `reach` of the contacts' patches, fading over the last
 /// quarter of it: those of the near fields, which are known at the edges' middles, and those of the rest.
-template <std::size_t Capacity>
+template <std::size_t Capacity, class Contact = DrawnContact>
 class MidEdgeCorrection {
  public:
   /// Four times the corrections of a triangle's edges.
@@ -42,7 +42,7 @@ class MidEdgeCorrection {
 
   /// `total`: the field at the mesh's vertices, by coordinate, `stride` numbers each; `own`: of it the near
   /// fields of the contacts, one after the other, likewise.
-  void read(const float* total, const float* own, std::size_t stride, std::span<const DrawnContact> contacts,
+  void read(const float* total, const float* own, std::size_t stride, std::span<const Contact> contacts,
             float reach) noexcept {
     const std::size_t count = contacts.size();
     find_rest(total, own, stride, count);
@@ -58,7 +58,7 @@ class MidEdgeCorrection {
   /// the edges are left out. `vertices`: coordinates. What is added is r max^2 / (max^2 + r^2), at most `max`
   /// / 2: the mesh does not resolve more.
   void correct_vertices(const std::array<const float*, 3>& vertices, const float* field,
-                        std::span<const DrawnContact> contacts, float reach, float max,
+                        std::span<const Contact> contacts, float reach, float max,
                         float* out) const noexcept {
     const MidEdgeTable::Rows& rows = table_->vertex_rows();
     const float max2 = max * max + (std::numeric_limits<float>::min)();
@@ -66,7 +66,7 @@ class MidEdgeCorrection {
       const SimdVec3<Simd4> at{Simd4(vertices[0] + first), Simd4(vertices[1] + first),
                                Simd4(vertices[2] + first)};
       Simd4 left = 1.f;
-      for (const DrawnContact& c : contacts) left *= 1.f - share(c.near, at, reach);
+      for (const Contact& c : contacts) left *= 1.f - share(c.near, at, reach);
       Simd4 by[Simd4::size()];
       for (std::size_t k = 0; k < Simd4::size(); ++k)
         by[k] = left[k] > 0 && first + k < rows.size() ? sum(rows[first + k], field) : Simd4{};
@@ -133,13 +133,13 @@ class MidEdgeCorrection {
   }
   // How much of the corrections at a point is drawn for one contact: 1 near it, 0 beyond its reach or if it
   // is inactive.
-  [[nodiscard]] static PALPATE_INLINE Simd4 share(const NearField& near, const SimdVec3<Simd4>& at,
+  [[nodiscard]] static PALPATE_INLINE Simd4 share(const auto& near, const SimdVec3<Simd4>& at,
                                                   float reach) noexcept {
     const SimdVec3<Simd4> r{at.x - near.x.x(), at.y - near.x.y(), at.z - near.x.z()};
     const Simd4 inside = reach + near.a - sqrt(dot(r, r));
     return near.activation * clamp(Simd4(inside * (1 / (tick::reach_fade * reach))), 0.f, 1.f);
   }
-  void find_shares(std::span<const DrawnContact> contacts, float reach) noexcept {
+  void find_shares(std::span<const Contact> contacts, float reach) noexcept {
     const auto& [x, y, z] = table_->middles();
     for (std::size_t e = 0; e < x.size(); e += Simd4::size()) {
       const SimdVec3<Simd4> at{Simd4(&x[e]), Simd4(&y[e]), Simd4(&z[e])};
@@ -153,7 +153,7 @@ class MidEdgeCorrection {
       store(&all_.share[e], (max)(1.f - without, largest));  // above 0 where one is, whatever the rounding
     }
   }
-  void correct_near(const NearField& near, const float* own, std::size_t stride, Corrections& out) noexcept {
+  void correct_near(const auto& near, const float* own, std::size_t stride, Corrections& out) noexcept {
     constexpr std::size_t wide = Wide::size();
     const auto& middle = table_->middles();
     for (std::size_t i = 0; i < out.edges.size(); i += wide) {

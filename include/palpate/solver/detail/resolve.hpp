@@ -78,10 +78,10 @@ class ResolvedCollector {
       centre += fn * c.position;
       pressed += fn;
       work += fn * c.depth;
-      out.area += tool.area(c.point);
       ++out.points;
     }
     out.id = state.id;
+    out.area = static_cast<S>(state.area());
     out.mode = !State::has_friction ? ContactMode::frictionless
                : state.slides()     ? ContactMode::sliding
                                     : ContactMode::sticking;

@@ -63,6 +63,12 @@ struct TickMemory {
   {
     return regions_.contacts();
   }
+  template <class List>
+  void loads(List& out) const noexcept
+    requires requires(const Regions& r) { r.residual(); }
+  {
+    regions_.loads(out);
+  }
   [[nodiscard]] const auto& residual() const noexcept
     requires requires(const Regions& r) { r.residual(); }
   {

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file The area of a resolved contact.
+
+#include <palpate/resolved/detail/convex_problem.hpp>
+#include <palpate/resolved/detail/point_system.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace palpate::detail {
+
+/// Area that touches [m^2]. A cell at the rim counts by the part f of it within the contact. Where the
+/// pressure falls as under a ball, p = 1.5 p_mean sqrt(2 s/a) at s inside the rim of radius a, a cell of
+/// width h has the mean pressure sqrt(2 h f/a) p_mean f; on points it is 0.8 of that, for points beyond the
+/// rim carry a part (balls on 20 to 150 points of a half-space: area -3 to +2 % in the mean of places).
+///
+/// `is_at_rim(i)`: next to a point that does not touch. Overwrites y of the lists.
+template <class IsAtRim>
+[[nodiscard]] float contact_area(const PointSystem& system, PressureLists& lists,
+                                 const IsAtRim& is_at_rim) noexcept {
+  constexpr float rim_pressure = 0.8f;
+  const float* const q = lists.q.data();
+  float* const at_rim = lists.y.data();
+  float whole = 0, load = 0, count = 0;
+  for (std::size_t i = 0; i < system.size(); ++i) {
+    if (!(q[i] > 0)) continue;
+    at_rim[i] = is_at_rim(i) ? 1.f : 0.f;
+    whole += system.area(i), load += q[i], count += 1;
+  }
+  float sum = whole;
+  for (int round = 0; round < 3 && count > 0; ++round) {  // a and p_mean are of the area that is sought
+    const float width = std::sqrt(std::numbers::pi_v<float> * whole / (count * sum)),  // h / a
+        full = rim_pressure * std::sqrt(2 * width) * load / sum;
+    sum = 0;
+    for (std::size_t i = 0; i < system.size(); ++i) {
+      if (!(q[i] > 0)) continue;
+      const float part = q[i] / (system.area(i) * full);
+      sum += system.area(i) * (at_rim[i] > 0 ? (std::min)(std::cbrt(part * part), 1.f) : 1.f);
+    }
+  }
+  return sum;
+}
+
+}  // namespace palpate::detail

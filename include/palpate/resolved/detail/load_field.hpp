@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file The field of a resolved contact's loads: at the vertices of the boundary element mesh, and near the
+/// loads anywhere on the surface.
+///
+///     u = sum_k F_k . w_k + sum_i u_near,i,   F_k = sum_i g_ik P_i
+///
+/// w_k: influence functions of the load mesh's nodes, g: the points' weights there, as in the regular part of
+/// the solve. u_near: point_load() of elasticity/, within a cell's width, r^2 < A, with
+///
+///     (3.92 - 5.84 s + 3.42 s^2 - 0.5 s^3) / sqrt(A),   s = r^2 / A     in place of 1/r
+///
+/// At the points this is the solve's own cell; value and slope are 1/r's at r^2 = A; the last coefficient
+/// makes the sum over a lattice of equal loads even: within 0.16/sqrt(A) all over squares and hexagons, half
+/// a percent of the depth with 65 points.
+
+#include <palpate/contact/surface_load.hpp>
+#include <palpate/core/simd_math.hpp>
+#include <palpate/core/simd_vec3.hpp>
+#include <palpate/response/tick/drawing.hpp>
+#include <palpate/response/tick/solved_nodes.hpp>
+
+#include <numbers>
+#include <span>
+#include <vector>
+
+namespace palpate::detail {
+
+/// A load in single precision, over 4 pi mu.
+struct NearLoad {
+  Vec3<float> x, m;  ///< where; direction of pressing
+  Vec3<float> P;     ///< [m^2]
+  float area;        ///< [m^2]
+
+  /// Displacement [m] at `at`; b = 1 - 2 nu.
+  template <class V>
+  PALPATE_INLINE void add(const SimdVec3<V>& at, float b, SimdVec3<V>& u) const noexcept {
+    const SimdVec3<V> r{at.x - x.x(), at.y - x.y(), at.z - x.z()};
+    const V r2 = dot(r, r), i2 = 1.f / (max)(r2, V(area)), i1 = sqrt(i2);
+    const V s = r2 * (1 / area),
+            inner = (1 / std::sqrt(area)) * (3.92f + s * (-5.84f + s * (3.42f - 0.5f * s)));
+    const V inverse = select(s < V(1.f), inner, i1);
+    // In the middle of the cell r (P.r)/r^2 is its mean over all directions along the surface.
+    const V outer = r2 * i2, half = 0.5f * (1.f - outer);
+    const float Pm = P.dot(m);
+    const Vec3<float> t = P - Pm * m;
+    const V along = i2 * of(P, r);
+    u.x += inverse * (P.x() + half * t.x() + along * r.x);
+    u.y += inverse * (P.y() + half * t.y() + along * r.y);
+    u.z += inverse * (P.z() + half * t.z() + along * r.z);
+    if (!(b > 0)) return;
+    const V z = of(m, r), s1 = 1.f / (max)(1.f + z * i1, V(0.1f)),
+            tp = of(t, r);  // as point_load() bounds it
+    const SimdVec3<V> p{r.x - z * m.x(), r.y - z * m.y(), r.z - z * m.z()};
+    const V scale = b * inverse, by_m = Pm + tp * i1 * s1, by_t = (1.f - half) * s1,
+            by_p = i1 * s1 * (Pm + tp * i1 * s1);
+    u.x += scale * (by_m * m.x() + by_t * t.x() - by_p * p.x);
+    u.y += scale * (by_m * m.y() + by_t * t.y() - by_p * p.y);
+    u.z += scale * (by_m * m.z() + by_t * t.z() - by_p * p.z);
+  }
+
+ private:
+  template <class V>
+  [[nodiscard]] static PALPATE_INLINE V of(const Vec3<float>& f, const SimdVec3<V>& r) noexcept {
+    return r.x * f.x() + r.y * f.y() + r.z * f.z();
+  }
+};
+
+/// All loads as the drawing sees them: one near field, with a ball around it.
+struct NearLoads {
+  Vec3<float> x = Vec3<float>::Zero();  ///< middle [m]
+  float a = 0;                          ///< all loads are within [m]
+  float activation = 1;
+  float b = 0;  ///< 1 - 2 nu
+  std::span<const NearLoad> loads;
+
+  template <class V>
+  [[nodiscard]] PALPATE_INLINE SimdVec3<V> operator()(const SimdVec3<V>& at) const noexcept {
+    SimdVec3<V> u{V(0.f), V(0.f), V(0.f)};
+    for (const NearLoad& load : loads) load.add(at, b, u);
+    return u;
+  }
+};
+
+/// What the drawing of the field reads (tick/drawing.hpp).
+struct DrawnLoads {
+  static constexpr bool follows_tool = false;
+  NearLoads near;
+  double largest2 = 0;  ///< of the field [m^2]
+  [[nodiscard]] double displacement2() const noexcept { return largest2; }
+};
+
+/// Holds the buffers; no heap after construction. The field must outlive it.
+class LoadField {
+ public:
+  LoadField(const ResponseField& field, std::size_t capacity)
+      : field_(&field),
+        near_loads_(capacity),
+        force_(3 * field.load_mesh().solved(), 0.f),
+        total_(3 * field.stride(), 0.f),
+        near_(total_) {
+    used_.reserve(field.load_mesh().solved());
+  }
+
+  /// Adds up the field of loads; precondition: no more than the capacity.
+  template <Real S>
+  void add_up(std::span<const SurfaceLoad<S>> loads) noexcept {
+    const auto n = static_cast<Eigen::Index>(field_->stride());
+    place(loads);
+    Row total(total_.data(), 3 * n);
+    total.setZero();
+    for (const std::uint32_t node : used_)
+      for (std::size_t l = 0; l < 3; ++l) {
+        float& f = force_[3 * node + l];
+        if (f != 0) total += f * Eigen::Map<const Eigen::ArrayXf>(field_->influence(node, l), 3 * n);
+        f = 0;
+      }
+    add_near();
+    const Eigen::Map<const Eigen::ArrayXf> free(field_->is_free(), n);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) total.segment(axis * n, n) *= free;
+    drawn_.largest2 =
+        double((total.head(n).square() + total.segment(n, n).square() + total.tail(n).square()).maxCoeff());
+  }
+  [[nodiscard]] const float* total() const noexcept { return total_.data(); }
+  [[nodiscard]] DrawnList<DrawnLoads> drawn() const noexcept { return {{&drawn_, 1}, near_.data()}; }
+
+ private:
+  using Row = Eigen::Map<Eigen::ArrayXf>;
+  using Wide = simd_at_most<float, 8>;
+
+  // Forces at the nodes, and loads in single precision.
+  template <Real S>
+  void place(std::span<const SurfaceLoad<S>> loads) noexcept {
+    used_.clear();
+    const LoadMesh& mesh = field_->load_mesh();
+    const double per_load = 1 / (4 * std::numbers::pi * field_->shear_modulus());
+    Vec3<double> low = Vec3<double>::Constant(1e30), high = -low;
+    for (std::size_t i = 0; i < loads.size(); ++i) {
+      const SurfaceLoad<S>& load = loads[i];
+      const Vec3<double> x = load.position.template cast<double>(),
+                         f = load.force.template cast<double>() / field_->shear_modulus();
+      low = low.cwiseMin(x), high = high.cwiseMax(x);
+      const LoadPosition position = mesh.locate(x);
+      FixedVector<NodeWeight, place_nodes, Spare::undefined> nodes;
+      add_position(mesh, position, nodes);
+      const double share = regular_share(position, mean_of(&LoadNode::size, *field_, position));
+      double carried = 0;
+      for (const NodeWeight& at : nodes) {
+        if (!(at.weight > 0)) continue;
+        float* const force = &force_[3 * at.node];
+        if (force[0] == 0 && force[1] == 0 && force[2] == 0 && used_.size() < used_.capacity())
+          used_.push_back(at.node);
+        for (std::size_t l = 0; l < 3; ++l)
+          force[l] += static_cast<float>(share * at.weight * f[Eigen::Index(l)]);
+        carried += at.weight;
+      }
+      // What falls on the fixed region moves nothing.
+      const double felt = 1 - share * (std::max)(1 - carried, 0.0);
+      near_loads_[i] = {x.template cast<float>(), load.direction.template cast<float>(),
+                        (felt * per_load * load.force.template cast<double>()).template cast<float>(),
+                        static_cast<float>(load.area)};
+    }
+    drawn_.near = {(0.5 * (low + high)).cast<float>(),
+                   static_cast<float>(0.5 * (high - low).norm()),
+                   1,
+                   static_cast<float>(1 - 2 * field_->nu()),
+                   {near_loads_.data(), loads.size()}};
+  }
+  void add_near() noexcept {
+    const std::size_t n = field_->stride();
+    for (std::size_t v = 0; v < n; v += Wide::size()) {
+      const auto at = [this, v](int axis) { return load<Wide>(field_->coordinate(axis) + v); };
+      const SimdVec3<Wide> u = drawn_.near(SimdVec3<Wide>{at(0), at(1), at(2)});
+      store(&near_[v], u.x), store(&near_[n + v], u.y), store(&near_[2 * n + v], u.z);
+    }
+    const auto size = static_cast<Eigen::Index>(total_.size());
+    Row(total_.data(), size) += Eigen::Map<const Eigen::ArrayXf>(near_.data(), size);
+  }
+
+  const ResponseField* field_;
+  DrawnLoads drawn_;
+  std::vector<NearLoad> near_loads_;
+  std::vector<std::uint32_t> used_;  // solved nodes with a force
+  std::vector<float> force_;         // three numbers per solved node; 0 between uses
+  std::vector<float> total_, near_;  // at the mesh's vertices, by coordinate
+};
+
+}  // namespace palpate::detail
