@@ -7,27 +7,59 @@
 #include <palpate/resolved/detail/point_system.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 namespace palpate::detail {
 
-/// Area that touches [m^2]. A cell at the rim counts by the part f of it within the contact. Where the
-/// pressure falls as under a ball, p = 1.5 p_mean sqrt(2 s/a) at s inside the rim of radius a, a cell of
-/// width h has the mean pressure sqrt(2 h f/a) p_mean f; on points it is 0.8 of that, for points beyond the
-/// rim carry a part (balls on 20 to 150 points of a half-space: area -3 to +2 % in the mean of places).
-///
-/// `is_at_rim(i)`: next to a point that does not touch. Overwrites y of the lists.
-template <class IsAtRim>
-[[nodiscard]] float contact_area(const PointSystem& system, PressureLists& lists,
-                                 const IsAtRim& is_at_rim) noexcept {
+/// Points beneath the surface that do not touch.
+class Unloaded {
+ public:
+  using V = PointSystem::V;
+  explicit Unloaded(std::size_t capacity) {
+    for (auto& axis : x_) axis.resize(AlignedList<float>::padded(capacity));
+  }
+  void clear() noexcept { size_ = 0; }
+  /// Precondition: fewer than the capacity.
+  void add(const Vec3<float>& x) noexcept {
+    for (std::size_t k = 0; k < 3; ++k) x_[k][size_] = x[Eigen::Index(k)];
+    ++size_;
+  }
+  /// After the last add(): whether one is nearer to x than the root of `distance2`.
+  [[nodiscard]] bool is_near(const Vec3<float>& x, float distance2) const noexcept {
+    V nearest(distance2);
+    for (std::size_t i = 0; i < size_; i += V::size()) {
+      const V dx = V(&x_[0][i]) - x.x(), dy = V(&x_[1][i]) - x.y(), dz = V(&x_[2][i]) - x.z();
+      nearest = (min)(nearest, dx * dx + dy * dy + dz * dz);
+    }
+    return reduce_min(nearest) < distance2;
+  }
+  void pad() noexcept {
+    for (auto& axis : x_)
+      for (std::size_t i = size_; i < padded<V>(size_); ++i) axis[i] = 1e3f;  // apart from all points
+  }
+
+ private:
+  std::array<AlignedList<float>, 3> x_;
+  std::size_t size_ = 0;
+};
+
+/// Area that touches [m^2]. A cell at the rim, next to a point that does not touch, counts by the part f of
+/// it within the contact. Where the pressure falls as under a ball, p = 1.5 p_mean sqrt(2 s/a) at s inside
+/// the rim of radius a, a cell of width h has the mean pressure sqrt(2 h f/a) p_mean f; on points it is 0.8
+/// of that, for points beyond the rim carry a part (balls on 20 to 150 points of a half-space: area -3 to
+/// +2 % in the mean of places). Overwrites y of the lists.
+[[nodiscard]] inline float contact_area(const PointSystem& system, PressureLists& lists,
+                                        const Unloaded& unloaded) noexcept {
   constexpr float rim_pressure = 0.8f;
+  constexpr float neighbours2 = 2.25f;  // of a cell's area: between first and second neighbours
   const float* const q = lists.q.data();
   float* const at_rim = lists.y.data();
   float whole = 0, load = 0, count = 0;
   for (std::size_t i = 0; i < system.size(); ++i) {
     if (!(q[i] > 0)) continue;
-    at_rim[i] = is_at_rim(i) ? 1.f : 0.f;
+    at_rim[i] = unloaded.is_near(system.position(i), neighbours2 * system.area(i)) ? 1.f : 0.f;
     whole += system.area(i), load += q[i], count += 1;
   }
   float sum = whole;

@@ -81,6 +81,7 @@ class PointSystem {
   /// The direction of pressing, first and second tangent of point i, by column.
   [[nodiscard]] const Mat3<float>& axes(std::size_t i) const noexcept { return axes_[i]; }
   [[nodiscard]] Vec3<float> normal(std::size_t i) const noexcept { return n_[i]; }
+  [[nodiscard]] Vec3<float> position(std::size_t i) const noexcept { return x_at_[i]; }
   [[nodiscard]] float area(std::size_t i) const noexcept { return area_[i]; }
   /// Where the load of point i acts on the undeformed surface.
   [[nodiscard]] Vec3<float> foot(std::size_t i) const noexcept { return x_[i]; }
@@ -170,8 +171,10 @@ class PointSystem {
       total += (1.f / (far * far)) * each<W>(group_n_[g]);
     }
     const SimdVec3<W> m = inverse_sqrt(dot(total, total)) * total;
-    const auto is_near = dot(m, n) > W(0.5f);  // never more than 60 degrees off the surface's normal
-    return {select(is_near, m.x, n.x), select(is_near, m.y, n.y), select(is_near, m.z, n.z)};
+    // From 37 to 60 degrees off it goes over to the surface's own normal, as over an edge of the body.
+    const W share = clamp(W((dot(m, n) - 0.5f) * (1 / 0.3f)), 0.f, 1.f);
+    const SimdVec3<W> mixed = share * m + (1.f - share) * n;
+    return inverse_sqrt(dot(mixed, mixed)) * mixed;
   }
 
   [[nodiscard]] Vec3<float> direction_at(const Vec3<float>& x, const Vec3<float>& n) const noexcept {

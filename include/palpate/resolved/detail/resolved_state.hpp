@@ -36,6 +36,7 @@ class ResolvedState {
         inside_(capacity),
         contacts_(capacity),
         system_(capacity, static_cast<float>(1 - 2 * body.nu()), has_friction),
+        unloaded_(capacity),
         regular_(regular_part(body, capacity)) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
     pressure_.resize(padded);
@@ -68,7 +69,11 @@ class ResolvedState {
 
   /// Area that touches [m^2].
   [[nodiscard]] float area() noexcept {
-    return contact_area(system_, pressure_, [this](std::size_t i) { return is_at_rim(i); });
+    unloaded_.clear();
+    for (const Touching& c : touching_)
+      if (!points_[c.point].loaded) unloaded_.add(relative(c.x));
+    unloaded_.pad();
+    return contact_area(system_, pressure_, unloaded_);
   }
 
   void begin_tick() noexcept {
@@ -369,19 +374,12 @@ class ResolvedState {
     slides_ = has_friction && !contacts_.empty() && !any_sticks;
   }
 
-  // Next to a point that is in the body's undeformed shape and does not touch.
-  [[nodiscard]] bool is_at_rim(std::size_t i) const noexcept {
-    const Touching& at = touching_[inside_[i]];
-    const S near2 = S(2.25) * static_cast<S>(system_.area(i));  // between first and second neighbours
-    return std::any_of(touching_.begin(), touching_.end(), [&](const Touching& c) {
-      return !points_[c.point].loaded && (c.x - at.x).squaredNorm() < near2;
-    });
-  }
   std::vector<Point> points_;
   BoundedList<Touching> touching_;
   BoundedList<std::uint32_t> inside_;  // of touching_, rising: those that are solved for
   BoundedList<PointContact<S>> contacts_;
   PointSystem system_;
+  Unloaded unloaded_;
   PressureLists pressure_;
   PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<has_friction, TractionLists, Absent<4>> traction_;
   PALPATE_NO_UNIQUE_ADDRESS RegularPart regular_;

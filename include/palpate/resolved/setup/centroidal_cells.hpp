@@ -49,6 +49,7 @@ class CentroidalCells {
     find_neighbours(cell2);
     assign();
     for (std::size_t k = 0; k < cells_.size(); ++k) {
+      if (!(cells_[k].area > 0)) continue;  // squeezed out, as on a narrow tip
       out.points.push_back(cells_[k].x.template cast<S>());
       out.areas.push_back(static_cast<S>(cells_[k].area));
       out.vector_areas.push_back((cells_[k].area * cells_[k].n).template cast<S>());

@@ -41,10 +41,16 @@ class ResolvedCollector {
             Vec3<S> m(-in.gradient_x[k], -in.gradient_y[k], -in.gradient_z[k]);
             const S length = m.norm();
             if (!(length > S(0))) continue;
-            // What faces away from the body cannot press on it.
-            if (!outward.empty() && !((X.rotation * outward[begin + k]).dot(m) > S(0))) continue;
+            // What faces away from the body cannot press on it; a wall fades out over some ten degrees.
+            S depth = in.depth[k];
+            if (!outward.empty()) {
+              const Vec3<S>& out = outward[begin + k];
+              const S facing = (X.rotation * out).dot(m), whole = S(0.2) * length * out.norm();
+              if (!(facing > S(0))) continue;
+              if (facing < whole) depth *= facing / whole;
+            }
             deepest = (std::max)(deepest, in.depth[k]);
-            if (!state.touch(begin + k, Vec3<S>(x.x[k], x.y[k], x.z[k]), in.depth[k], m / length))
+            if (!state.touch(begin + k, Vec3<S>(x.x[k], x.y[k], x.z[k]), depth, m / length))
               result.status |= Status::point_overflow;
           }
         });
