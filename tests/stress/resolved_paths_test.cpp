@@ -6,19 +6,19 @@
 ///
 /// *Continuity.* In a tick force and torque change by at most
 ///
-///     |dF| <= K |dx|,   |dtau| <= K |dx| L,   K = 2 E' sqrt(A/pi)
+///     |dF| <= K |dx|,   |dtau| <= K |dx| L,   K = 1.32 2 E' sqrt(A/pi)
 ///
 /// with |dx| the largest displacement of any tool point and what two ticks' tolerance leaves of displacements
-/// (2e-4 of the depths' norm), A the area of the loaded cells, K the stiffness of a flat punch of that area (no
-/// rigid tool with so much in contact is stiffer but a slender one, a sideways push is softer, and whole cells
-/// are more than the contact), L the farthest point from the centre of mass. With friction 1 + mu times that,
+/// (2e-4 of the depths' norm), A the area of the loaded cells, K the stiffness of a flat rectangle 10:1 of that
+/// area (1.32 of a disc's; no rigid tool with so much in contact is stiffer but a more slender one, a sideways
+/// push is softer, and whole cells are more than the contact), L the farthest point from the centre of mass. With friction 1 + mu times that,
 /// for its limit follows the pressure. It is checked at three step lengths: where the step is halved the bound
 /// is, and a jump would stay.
 ///
 /// *Energy.* Without friction a closed path of 1,000 ticks and more gives no work: less than 0.5 % of what goes to
 /// and fro on a half-space (points come in up to eight ticks late: with 500 ticks 1 %). On a body with a
-/// response field its regular part changes along the surface, and the force that follows from that is missing:
-/// up to 13 % on paths of 24 mm. With friction the hand gains nothing.
+/// response field the force follows the regular part's mean gradient along the surface: -2 to 3 % on paths of
+/// 24 mm. With friction the hand gains nothing.
 ///
 /// PALPATE_STRESS in the environment (tests/run --stress): ten times as many paths.
 
@@ -162,7 +162,6 @@ void go_round(Solver& solver, const Path& path, int ticks, Worst& worst) {
     double step = 0, area = 0;
     for (const V& x : tool.points()) step = (std::max)(step, (X * x - before * x).norm());
     for (const ContactState<double>& c : solver.contacts()) {
-      area += c.area;
       ++worst.touching;
       worst.sliding += c.mode == ContactMode::sliding;
     }
@@ -170,10 +169,11 @@ void go_round(Solver& solver, const Path& path, int ticks, Worst& worst) {
     double depth2 = 0;
     for (const auto& p : solver.state().points()) {
       depth2 += p.depth * p.depth;
+      area += tool.area(p.point);
       const double x = tool.point(p.point).x();
       left |= x<-2e-3, right |= x> 2e-3, middle |= std::abs(x) < 1e-3;
     }
-    const double K = 2 * E_plane * std::sqrt((std::max)(area, area_before) / pi);
+    const double K = 1.32 * 2 * E_plane * std::sqrt((std::max)(area, area_before) / pi);
     step += 2 * solver.force_law().params().tolerance * std::sqrt(depth2);  // of this tick and the last
     if (K > 0) {
       worst.force = (std::max)(worst.force, (now.force - last.force).norm() / (K * step));
@@ -310,7 +310,7 @@ TEST_CASE("resolved contact on random closed paths: a response field") {
   check(
       "response field", Ellipsoid<double>({.axes = V(0.06, 0.04, 0.04)}),
       ResponseCompliance(std::make_shared<const ResponseField>(ellipsoid_field(nu, 300))),
-      [](const V& x) { return x.y() > 0; }, 0.15, 4);
+      [](const V& x) { return x.y() > 0; }, 0.04, 4);
 }
 
 TEST_CASE("resolved contact, poses that jump: finite, no heap, the same bits") {
