@@ -235,15 +235,14 @@ void check(const char* name, const Body& body, const Compliance& compliance, con
       for (const int ticks : {1000, 2000}) go_round(slick, path, ticks, smooth);
       same &= copies_agree(slick, path, 300);
     }
-    // Coefficients are equal: where they differ the drop at breakaway is a jump.
-    Rough even({.object = body,
+    Rough dry({.object = body,
                 .tool = tool.points,
                 .force = elastic,
-                .friction = CoulombFriction<double>({.mu_static = mu, .mu_dynamic = mu})});
+                .friction = CoulombFriction<double>({.mu_static = mu, .mu_dynamic = 0.75 * mu})});
     for (int p = 0; p < paths(1); ++p) {
       const ClosedPath<Body> path(body, far, allowed, random);
-      for (const int ticks : {500, 1000, 2000}) go_round(even, path, ticks, rough);
-      same &= copies_agree(even, path, 300);
+      for (const int ticks : {500, 1000, 2000}) go_round(dry, path, ticks, rough);
+      same &= copies_agree(dry, path, 300);
     }
     // Strokes of 0.1 mm: it sticks and slips in part, and little of the work is lost.
     Rough dropping({.object = body,

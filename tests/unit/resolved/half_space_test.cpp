@@ -143,6 +143,26 @@ TEST_CASE(
   CHECK(was_partial);
 }
 
+TEST_CASE("where a ball breaks away friction falls no faster than it rose, to the sliding limit") {
+  constexpr double step = 1e-6, deep = 1e-3, stuck_after = 1e-4;
+  Solver<CoulombFriction<double>> solver =
+      solver_of(ball, 0.0012, CoulombFriction<double>({.mu_static = 0.4, .mu_dynamic = 0.3}));
+  for (int i = 0; i <= 100; ++i) (void)solver.tick(at(0, R - deep * i / 100));
+  double before = 0, rise = 0, fall = 0, most = 0, normal = 0;
+  for (int i = 1; i <= 1500; ++i) {
+    const V force = solver.tick(at(step * i, R - deep)).wrench.force;
+    rise = (std::max)(rise, before - force.x());
+    fall = (std::max)(fall, force.x() - before);
+    before = force.x(), normal = force.y();
+    most = (std::max)(most, -before / normal);
+    if (step * i < stuck_after) CHECK(fall == 0);
+  }
+  CHECK_RELATIVE(most, 0.4, 0.02);              // it fades from where the last point slips
+  CHECK_RELATIVE(-before / normal, 0.3, 0.01);  // in 1.5 mm it has faded to less
+  CHECK(fall > 0);
+  CHECK(fall <= 1.05 * rise);  // rounding and the tolerance; at once it would be 100 times
+}
+
 TEST_CASE("a ball that sticks does not creep: after 20,000 ticks to and fro the force is what it was") {
   Solver<CoulombFriction<double>> solver =
       solver_of(ball, 0.0016, CoulombFriction<double>({.mu_static = 2, .mu_dynamic = 2}));

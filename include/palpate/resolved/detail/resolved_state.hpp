@@ -12,6 +12,8 @@
 #include <palpate/resolved/detail/contact_area.hpp>
 #include <palpate/resolved/detail/convex_problem.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
+#include <palpate/resolved/detail/static_strength.hpp>
+#include <palpate/resolved/detail/touching_point.hpp>
 #include <palpate/resolved/elastic_contact.hpp>
 
 #include <algorithm>
@@ -129,20 +131,8 @@ class ResolvedState {
   static constexpr float near = 0.05f;
   static constexpr int max_turns = 4;
 
-  struct Point {
-    std::uint32_t tick = 0;                    // when it touched
-    bool loaded = false;                       // in that tick
-    float sunk = 0;                            // depth less what it lacks to touch [m]
-    std::uint32_t triangle = ~0u;              // of the load mesh
-    Vec3<float> load = Vec3<float>::Zero();    // P on the body [m^2]
-    Vec3<float> anchor = Vec3<float>::Zero();  // where it holds the surface [m]
-  };
-  struct Touching {
-    std::uint32_t point;
-    Vec3<S> x;
-    Vec3<float> m;
-    float depth;
-  };
+  using Point = PointMemory;
+  using Touching = TouchingPoint<S>;
 
   [[nodiscard]] static RegularPart regular_part(const Compliance& body, std::size_t capacity) {
     if constexpr (RegularPart::active)
@@ -156,6 +146,7 @@ class ResolvedState {
   }
   void forget() noexcept {
     slides_ = false;
+    strength_ = {};
     if constexpr (has_friction) traction_.step = 0;
   }
   [[nodiscard]] Point& point(std::size_t i) noexcept { return points_[touching_[inside_[i]].point]; }
@@ -323,13 +314,23 @@ class ResolvedState {
   }
   /// mu of every point: the law's limit of the whole contact over its normal force.
   template <class Friction>
-  float coefficient(const Force& force, const Friction& friction) const noexcept {
+  float coefficient(const Force& force, const Friction& friction) noexcept {
     double sum = 0;
     for (std::size_t i = 0; i < size(); ++i) sum += double(pressure_.q[i]);
     const S normal = static_cast<S>(sum * 4 * std::numbers::pi * force.shear_modulus());
     if (!(normal > S(0))) return 0;
-    return static_cast<float>((slides_ ? friction.sliding_limit(normal) : friction.static_limit(normal)) /
-                              normal);
+    return strength_.coefficient(friction, normal);
+  }
+  // Static strength fades by the way that the surface lags behind the tool.
+  void fade() noexcept {
+    Vec3<float> way = Vec3<float>::Zero(), stretch = Vec3<float>::Zero();
+    for (std::size_t i = 0; i < size(); ++i) {
+      const float q = pressure_.q[i], us = traction_.us[i], ut = traction_.ut[i];
+      const Mat3<float>& axes = system_.axes(i);
+      way += q * ((traction_.as[i] - us) * axes.col(1) + (traction_.at[i] - ut) * axes.col(2));
+      stretch += q * (us * axes.col(1) + ut * axes.col(2));
+    }
+    strength_.fade(slides_, way.norm(), stretch.norm());
   }
   void store_load(std::size_t i) noexcept {
     Vec3<float> P(pressure_.q[i], 0, 0);
@@ -372,6 +373,7 @@ class ResolvedState {
                            scale * static_cast<S>(q) / tool.area(at.point), static_cast<S>(at.depth)});
     }
     slides_ = has_friction && !contacts_.empty() && !any_sticks;
+    if constexpr (has_friction) fade();
   }
 
   std::vector<Point> points_;
@@ -389,6 +391,7 @@ class ResolvedState {
   S per_load_ = 0;  // 4 pi mu [Pa]
   std::uint32_t tick_ = 1;
   bool slides_ = false;
+  StaticStrength strength_;
 
  public:
   std::uint32_t id = 0;  ///< of the contact: another one after each lift-off
