@@ -236,9 +236,9 @@ void check(const char* name, const Body& body, const Compliance& compliance, con
       same &= copies_agree(slick, path, 300);
     }
     Rough dry({.object = body,
-                .tool = tool.points,
-                .force = elastic,
-                .friction = CoulombFriction<double>({.mu_static = mu, .mu_dynamic = 0.75 * mu})});
+               .tool = tool.points,
+               .force = elastic,
+               .friction = CoulombFriction<double>({.mu_static = mu, .mu_dynamic = 0.75 * mu})});
     for (int p = 0; p < paths(1); ++p) {
       const ClosedPath<Body> path(body, far, allowed, random);
       for (const int ticks : {500, 1000, 2000}) go_round(dry, path, ticks, rough);
