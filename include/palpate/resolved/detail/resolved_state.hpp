@@ -391,7 +391,7 @@ class ResolvedState {
   S per_load_ = 0;  // 4 pi mu [Pa]
   std::uint32_t tick_ = 1;
   bool slides_ = false;
-  StaticStrength strength_;
+  PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<has_friction, StaticStrength, Absent<6>> strength_;
 
  public:
   std::uint32_t id = 0;  ///< of the contact: another one after each lift-off
