@@ -35,15 +35,23 @@ struct Load {
   double area = 0;                          // [mm^2]
 };
 
-/// Of all tools together, by step.
-std::vector<Load> loads(const std::string& path) {
-  std::vector<Load> out;
+/// row(words) for each line of a table but its first; numbers by operator>>.
+template <class Row>
+void each_row(const std::string& path, const Row& row) {
   std::istringstream in(read_text(path));
   std::string line;
   std::getline(in, line);
   while (std::getline(in, line)) {
     std::replace(line.begin(), line.end(), ',', ' ');
     std::istringstream words(line);
+    row(words);
+  }
+}
+
+/// Of all tools together, by step.
+std::vector<Load> loads(const std::string& path) {
+  std::vector<Load> out;
+  each_row(path, [&out](std::istream& words) {
     std::size_t step = 0, tool = 0;
     Load l;
     words >> step >> tool >> l.force.x() >> l.force.y() >> l.force.z() >> l.torque.x() >> l.torque.y() >>
@@ -52,7 +60,7 @@ std::vector<Load> loads(const std::string& path) {
     out[step - 1].force += l.force;
     out[step - 1].torque += l.torque;
     out[step - 1].area += l.area;
-  }
+  });
   return out;
 }
 
@@ -64,12 +72,7 @@ struct Shapes {
 };
 Shapes shapes(const std::string& path) {
   Shapes out;
-  std::istringstream in(read_text(path));
-  std::string line;
-  std::getline(in, line);
-  while (std::getline(in, line)) {
-    std::replace(line.begin(), line.end(), ',', ' ');
-    std::istringstream words(line);
+  each_row(path, [&out](std::istream& words) {
     V x, u;
     double area = 0;
     words >> x.x() >> x.y() >> x.z() >> area;
@@ -77,7 +80,7 @@ Shapes shapes(const std::string& path) {
     out.area.push_back(area);
     out.u.emplace_back();
     while (words >> u.x() >> u.y() >> u.z()) out.u.back().push_back(mm * u);
-  }
+  });
   return out;
 }
 

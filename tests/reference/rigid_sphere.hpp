@@ -7,16 +7,21 @@
 
 namespace palpate::test {
 
-/// Force [N] at the depth d [m], below that of a = 0.999 R; E' = E/(1 - nu^2) [Pa].
+/// Radius a of the contact [m] at the depth d [m], below 0.999 R:
 ///
-///     d = a/2 l,   F = E'/2 ((a^2 + R^2) l - 2 a R),   l = ln((R + a)/(R - a))
-[[nodiscard]] inline double rigid_sphere_force(double R, double d, double E_plane) {
+///     d = a/2 l,   l = ln((R + a)/(R - a))
+[[nodiscard]] inline double rigid_sphere_radius(double R, double d) {
   double low = 0, high = 0.999 * R;
   for (int i = 0; i < 100; ++i) {
     const double a = (low + high) / 2;
     (a / 2 * std::log((R + a) / (R - a)) < d ? low : high) = a;
   }
-  const double a = low;
+  return low;
+}
+
+/// Force [N], F = E'/2 ((a^2 + R^2) l - 2 a R); E' = E/(1 - nu^2) [Pa].
+[[nodiscard]] inline double rigid_sphere_force(double R, double d, double E_plane) {
+  const double a = rigid_sphere_radius(R, d);
   return E_plane / 2 * ((a * a + R * R) * std::log((R + a) / (R - a)) - 2 * a * R);
 }
 

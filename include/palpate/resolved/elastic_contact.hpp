@@ -13,6 +13,7 @@
 #include <palpate/core/scalar.hpp>
 
 #include <concepts>
+#include <cstddef>
 
 namespace palpate {
 
@@ -44,6 +45,7 @@ namespace detail {
 /// The regular part of a body that is a half-space: nothing.
 struct NoRegularPart {
   static constexpr bool active = false;
+  NoRegularPart(const auto& /*body*/, std::size_t /*capacity*/) {}
 };
 /// What a body adds to the half-space's response: `C::RegularPart`, if there is one.
 template <class C>

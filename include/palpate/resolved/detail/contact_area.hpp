@@ -7,7 +7,6 @@
 #include <palpate/resolved/detail/point_system.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -17,31 +16,27 @@ namespace palpate::detail {
 class Unloaded {
  public:
   using V = PointSystem::V;
-  explicit Unloaded(std::size_t capacity) {
-    for (auto& axis : x_) axis.resize(AlignedList<float>::padded(capacity));
-  }
+  explicit Unloaded(std::size_t capacity) { x_.resize(capacity); }
   void clear() noexcept { size_ = 0; }
   /// Precondition: fewer than the capacity.
-  void add(const Vec3<float>& x) noexcept {
-    for (std::size_t k = 0; k < 3; ++k) x_[k][size_] = x[Eigen::Index(k)];
-    ++size_;
+  void add(const Vec3<float>& x) noexcept { x_.set(size_++, x); }
+  /// After the last add().
+  void pad() noexcept {
+    for (std::size_t i = size_; i < padded<V>(size_); ++i) x_.set(i, PointSystem::apart());
   }
-  /// After the last add(): whether one is nearer to x than the root of `distance2`.
+  /// After pad(): whether one is nearer to x than the root of `distance2`.
   [[nodiscard]] bool is_near(const Vec3<float>& x, float distance2) const noexcept {
+    const SimdVec3<V> here{V(x.x()), V(x.y()), V(x.z())};
     V nearest(distance2);
     for (std::size_t i = 0; i < size_; i += V::size()) {
-      const V dx = V(&x_[0][i]) - x.x(), dy = V(&x_[1][i]) - x.y(), dz = V(&x_[2][i]) - x.z();
-      nearest = (min)(nearest, dx * dx + dy * dy + dz * dz);
+      const SimdVec3<V> r = x_.load(i) - here;
+      nearest = (min)(nearest, dot(r, r));
     }
     return reduce_min(nearest) < distance2;
   }
-  void pad() noexcept {
-    for (auto& axis : x_)
-      for (std::size_t i = size_; i < padded<V>(size_); ++i) axis[i] = 1e3f;  // apart from all points
-  }
 
  private:
-  std::array<AlignedList<float>, 3> x_;
+  PointSystem::Vectors x_;
   std::size_t size_ = 0;
 };
 

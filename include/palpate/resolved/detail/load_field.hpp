@@ -20,6 +20,7 @@
 #include <palpate/core/simd_vec3.hpp>
 #include <palpate/response/tick/drawing.hpp>
 #include <palpate/response/tick/solved_nodes.hpp>
+#include <palpate/response/tick/vertex_field.hpp>
 
 #include <numbers>
 #include <span>
@@ -108,7 +109,7 @@ class LoadField {
   void add_up(std::span<const SurfaceLoad<S>> loads) noexcept {
     const auto n = static_cast<Eigen::Index>(field_->stride());
     place(loads);
-    Row total(total_.data(), 3 * n);
+    Eigen::Map<Eigen::ArrayXf> total(total_.data(), 3 * n);
     total.setZero();
     for (const std::uint32_t node : used_)
       for (std::size_t l = 0; l < 3; ++l) {
@@ -116,19 +117,15 @@ class LoadField {
         if (f != 0) total += f * Eigen::Map<const Eigen::ArrayXf>(field_->influence(node, l), 3 * n);
         f = 0;
       }
-    add_near();
-    const Eigen::Map<const Eigen::ArrayXf> free(field_->is_free(), n);
-    for (Eigen::Index axis = 0; axis < 3; ++axis) total.segment(axis * n, n) *= free;
-    drawn_.largest2 =
-        double((total.head(n).square() + total.segment(n, n).square() + total.tail(n).square()).maxCoeff());
+    near_at_vertices(*field_, drawn_.near, near_.data());
+    total += Eigen::Map<const Eigen::ArrayXf>(near_.data(), 3 * n);
+    hold_fixed(*field_, total_.data());
+    drawn_.largest2 = max2(*field_, total_.data());
   }
   [[nodiscard]] const float* total() const noexcept { return total_.data(); }
   [[nodiscard]] DrawnList<DrawnLoads> drawn() const noexcept { return {{&drawn_, 1}, near_.data()}; }
 
  private:
-  using Row = Eigen::Map<Eigen::ArrayXf>;
-  using Wide = simd_at_most<float, 8>;
-
   // Forces at the nodes, and loads in single precision.
   template <Real S>
   void place(std::span<const SurfaceLoad<S>> loads) noexcept {
@@ -166,16 +163,6 @@ class LoadField {
                    1,
                    static_cast<float>(1 - 2 * field_->nu()),
                    {near_loads_.data(), loads.size()}};
-  }
-  void add_near() noexcept {
-    const std::size_t n = field_->stride();
-    for (std::size_t v = 0; v < n; v += Wide::size()) {
-      const auto at = [this, v](int axis) { return load<Wide>(field_->coordinate(axis) + v); };
-      const SimdVec3<Wide> u = drawn_.near(SimdVec3<Wide>{at(0), at(1), at(2)});
-      store(&near_[v], u.x), store(&near_[n + v], u.y), store(&near_[2 * n + v], u.z);
-    }
-    const auto size = static_cast<Eigen::Index>(total_.size());
-    Row(total_.data(), size) += Eigen::Map<const Eigen::ArrayXf>(near_.data(), size);
   }
 
   const ResponseField* field_;

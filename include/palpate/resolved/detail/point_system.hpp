@@ -34,6 +34,22 @@ class PointSystem {
   using V = native_simd<float>;
   static constexpr float own_cell = 3.92f;
 
+  /// A place that is far from all points, to fill up registers with [m].
+  [[nodiscard]] static Vec3<float> apart() noexcept { return Vec3<float>::Constant(1e3f); }
+  /// Vectors of space, coordinate by coordinate.
+  struct Vectors {
+    AlignedList<float> x, y, z;
+    void resize(std::size_t n) { x.resize(n), y.resize(n), z.resize(n); }
+    [[nodiscard]] Vec3<float> operator[](std::size_t i) const noexcept { return {x[i], y[i], z[i]}; }
+    void set(std::size_t i, const Vec3<float>& v) noexcept { x[i] = v.x(), y[i] = v.y(), z[i] = v.z(); }
+    [[nodiscard]] PALPATE_INLINE SimdVec3<V> load(std::size_t i) const noexcept {
+      return {V(&x[i]), V(&y[i]), V(&z[i])};
+    }
+    PALPATE_INLINE void store(std::size_t i, const SimdVec3<V>& v) noexcept {
+      v.x.copy_to(&x[i]), v.y.copy_to(&y[i]), v.z.copy_to(&z[i]);
+    }
+  };
+
   PointSystem(std::size_t capacity, float compressibility, bool has_friction)
       : has_friction_(has_friction), b_(compressibility) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
@@ -185,18 +201,6 @@ class PointSystem {
   AlignedList<float> depth;  ///< along the first axes [m]
 
  private:
-  struct Vectors {
-    AlignedList<float> x, y, z;
-    void resize(std::size_t n) { x.resize(n), y.resize(n), z.resize(n); }
-    [[nodiscard]] Vec3<float> operator[](std::size_t i) const noexcept { return {x[i], y[i], z[i]}; }
-    void set(std::size_t i, const Vec3<float>& v) noexcept { x[i] = v.x(), y[i] = v.y(), z[i] = v.z(); }
-    [[nodiscard]] PALPATE_INLINE SimdVec3<V> load(std::size_t i) const noexcept {
-      return {V(&x[i]), V(&y[i]), V(&z[i])};
-    }
-    PALPATE_INLINE void store(std::size_t i, const SimdVec3<V>& v) noexcept {
-      v.x.copy_to(&x[i]), v.y.copy_to(&y[i]), v.z.copy_to(&z[i]);
-    }
-  };
   struct Pair {
     V inverse;      // 1/r
     SimdVec3<V> e;  // from j to i
@@ -220,7 +224,7 @@ class PointSystem {
       axis_[0].store(i, m);
     }
     for (std::size_t i = size_; i < stride_; ++i) {  // what fills up presses on no point
-      x_.set(i, Vec3<float>::Constant(1e3f));
+      x_.set(i, apart());
       for (auto& axis : axis_) axis.set(i, Vec3<float>::Zero());
     }
     for (std::size_t i = 0; i < size_; ++i) {

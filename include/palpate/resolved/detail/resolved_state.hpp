@@ -39,7 +39,7 @@ class ResolvedState {
         contacts_(capacity),
         system_(capacity, static_cast<float>(1 - 2 * body.nu()), has_friction),
         unloaded_(capacity),
-        regular_(regular_part(body, capacity)) {
+        regular_(body, capacity) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
     pressure_.resize(padded);
     if constexpr (has_friction) traction_.resize(padded);
@@ -134,12 +134,6 @@ class ResolvedState {
   using Point = PointMemory;
   using Touching = TouchingPoint<S>;
 
-  [[nodiscard]] static RegularPart regular_part(const Compliance& body, std::size_t capacity) {
-    if constexpr (RegularPart::active)
-      return RegularPart(body, capacity);
-    else
-      return {};
-  }
   [[nodiscard]] std::size_t size() const noexcept { return inside_.size(); }
   [[nodiscard]] Vec3<float> relative(const Vec3<S>& x) const noexcept {
     return (x - origin_).template cast<float>();
@@ -321,16 +315,16 @@ class ResolvedState {
     if (!(normal > S(0))) return 0;
     return strength_.coefficient(friction, normal);
   }
-  // Static strength fades by the way that the surface lags behind the tool.
+  // Static strength fades as the tool slides over the surface.
   void fade() noexcept {
-    Vec3<float> way = Vec3<float>::Zero(), stretch = Vec3<float>::Zero();
+    Vec3<float> slip = Vec3<float>::Zero(), stretch = Vec3<float>::Zero();
     for (std::size_t i = 0; i < size(); ++i) {
       const float q = pressure_.q[i], us = traction_.us[i], ut = traction_.ut[i];
       const Mat3<float>& axes = system_.axes(i);
-      way += q * ((traction_.as[i] - us) * axes.col(1) + (traction_.at[i] - ut) * axes.col(2));
+      slip += q * ((traction_.as[i] - us) * axes.col(1) + (traction_.at[i] - ut) * axes.col(2));
       stretch += q * (us * axes.col(1) + ut * axes.col(2));
     }
-    strength_.fade(slides_, way.norm(), stretch.norm());
+    strength_.fade(slip.norm(), stretch.norm());
   }
   void store_load(std::size_t i) noexcept {
     Vec3<float> P(pressure_.q[i], 0, 0);
@@ -373,7 +367,10 @@ class ResolvedState {
                            scale * static_cast<S>(q) / tool.area(at.point), static_cast<S>(at.depth)});
     }
     slides_ = has_friction && !contacts_.empty() && !any_sticks;
-    if constexpr (has_friction) fade();
+    if (!slides_)
+      strength_ = {};
+    else if constexpr (has_friction)
+      fade();
   }
 
   std::vector<Point> points_;

@@ -10,8 +10,8 @@
 namespace palpate::detail {
 
 /// Static strength fades while the whole contact slides, and returns where a point sticks. It fades by e over
-/// twice the way by which the surface springs back when it is gone: so friction falls no faster than it rose,
-/// however large the drop, and does not fall in a tick.
+/// twice the length by which the surface springs back when it is gone: so friction falls no faster than it
+/// rose, however large the drop, and does not fall in a tick.
 class StaticStrength {
  public:
   /// mu for the normal force of the whole contact [N], > 0.
@@ -21,14 +21,11 @@ class StaticStrength {
     drop_ = held > sliding ? static_cast<float>(1 - sliding / held) : 0.f;
     return static_cast<float>(std::lerp(sliding, held, static_cast<S>(left_)) / normal);
   }
-  /// After a tick in which the surface lagged behind the tool by `way` and is stretched by `stretch`, any
+  /// After a tick in which the whole contact slid by `slip` and the surface is stretched by `stretch`, any
   /// unit.
-  void fade(bool slides, float way, float stretch) noexcept {
-    const float spring = 2 * drop_ * stretch, whole = spring + way;
-    if (!slides)
-      left_ = 1;
-    else if (whole > 0)
-      left_ *= spring / whole;
+  void fade(float slip, float stretch) noexcept {
+    const float spring = 2 * drop_ * stretch, whole = spring + slip;
+    if (whole > 0) left_ *= spring / whole;
   }
 
  private:

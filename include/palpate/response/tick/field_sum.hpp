@@ -16,6 +16,7 @@
 #include <palpate/response/tick/contact_system.hpp>
 #include <palpate/response/tick/drawing.hpp>
 #include <palpate/response/tick/rotation_correction.hpp>
+#include <palpate/response/tick/vertex_field.hpp>
 
 namespace palpate::detail {
 
@@ -42,7 +43,6 @@ class FieldSum {
 
  private:
   using Row = Eigen::Map<const Eigen::ArrayXf>;
-  using Wide = simd_at_most<float, 8>;
   [[nodiscard]] static Eigen::Map<Eigen::ArrayXf> all(std::vector<float>& list) noexcept {
     return {list.data(), static_cast<Eigen::Index>(list.size())};
   }
@@ -104,19 +104,14 @@ class FieldSum {
       if (torsion != 0)
         second += static_cast<float>(placed.regular * at.weight * torsion) * influence(at.node, 6);
     }
-    const double share = smooth_limit(max2(second_), tick::max_load_field2 * placed.displacement2);
+    const double share =
+        smooth_limit(max2(*field_, second_.data()), tick::max_load_field2 * placed.displacement2);
     all(total_) += static_cast<float>(share) * second;
   }
   void add_near(std::size_t c) noexcept {
     const std::size_t n = field_->stride();
     float* const own = &near_[c * 3 * n];
-    for (std::size_t v = 0; v < n; v += Wide::size()) {
-      const auto at = [this, v](int axis) { return load<Wide>(field_->coordinate(axis) + v); };
-      const auto u = drawn_[c].near(SimdVec3<Wide>{at(0), at(1), at(2)});
-      store(own + v, u.x);
-      store(own + n + v, u.y);
-      store(own + 2 * n + v, u.z);
-    }
+    near_at_vertices(*field_, drawn_[c].near, own);
     all(total_) += Row(own, static_cast<Eigen::Index>(total_.size()));
   }
 
@@ -133,18 +128,12 @@ class FieldSum {
   }
   // A field beyond 4 d is one that the mesh does not resolve. It is scaled down, so that no spike is drawn.
   void limit(const ContactSystem<Capacity>& contacts) noexcept {
-    const auto share =
-        static_cast<float>(smooth_limit(max2(total_), tick::max_field2 * contacts.max_displacement2(count_)));
+    const auto share = static_cast<float>(
+        smooth_limit(max2(*field_, total_.data()), tick::max_field2 * contacts.max_displacement2(count_)));
     if (!(share < 1)) return;
     all(total_) *= share;
     all(near_).head(static_cast<Eigen::Index>(3 * count_ * field_->stride())) *= share;
     for (std::size_t c = 0; c < count_; ++c) drawn_[c].near = drawn_[c].near.scaled(share);
-  }
-  // Largest u^2 of a field.
-  [[nodiscard]] double max2(const std::vector<float>& field) const noexcept {
-    const auto n = static_cast<Eigen::Index>(field_->stride());
-    const Row u(field.data(), 3 * n);
-    return double((u.head(n).square() + u.segment(n, n).square() + u.tail(n).square()).maxCoeff());
   }
 
   const ResponseField* field_;
@@ -161,12 +150,10 @@ class FieldSum {
 
 template <std::size_t Capacity>
 void FieldSum<Capacity>::add_up(const ContactSystem<Capacity>& contacts, std::size_t count) noexcept {
-  const auto n = static_cast<Eigen::Index>(field_->stride());
   all(total_).setZero();
   count_ = count;
   for (std::size_t c = 0; c < count; ++c) add_contact(contacts, c);
-  const Row free(field_->is_free(), n);
-  for (Eigen::Index axis = 0; axis < 3; ++axis) all(total_).segment(axis * n, n) *= free;
+  hold_fixed(*field_, total_.data());
   add_rotation(contacts);
   limit(contacts);
 }
