@@ -27,11 +27,12 @@ namespace palpate {
 struct Felt {
   Wrench<double> wrench;  ///< on the tool: force [N], torque about its centre of mass [N m]
   Status status;
-  std::span<const ContactState<double>> contacts;  ///< valid until the next tick
+  std::span<const ContactState<double>> contacts;  ///< a whole tool's as one; valid until the next tick
+  std::span<const PointContact<double>> points;    ///< force, pressure, stick or slip; none of a ball
 };
 
-/// A tool on an elastic body: force from laws fitted to the body's response field, shape from the field
-/// itself.
+/// A tool on an elastic body: force and shape from the body's response field. A ball has a law that is fitted
+/// to it, any other tool contact resolved at its points (docs/resolved.md).
 ///
 /// | call     | thread        | real time                                                        |
 /// |----------|---------------|------------------------------------------------------------------|
@@ -39,12 +40,13 @@ struct Felt {
 /// | `draw()` | any one other | the same; contacts of the newest tick, handed over without locks |
 ///
 /// Coordinates are the object's [m], y up, unless an object pose is given. It stays where it was made, for
-/// threads hold on to it. Set-up takes up to some seconds: it fits the law at every position of the body.
+/// threads hold on to it. Set-up takes up to some seconds: a ball's law is fitted all over the body.
 /// Reports what its parts report.
 template <class Tool, FrictionLaw Friction = Frictionless<double>>
   requires std::same_as<typename Friction::Scalar, double>
 class Touch {
   using Parts = detail::TouchParts<Tool>;
+  static constexpr bool is_resolved = ResolvedTopology<typename Parts::Contacts>;
 
  public:
   using Solver = ContactSolver<typename Parts::Object, typename Parts::Force, Friction,
@@ -60,7 +62,10 @@ class Touch {
   [[nodiscard]] Felt tick(const Pose<double>& pose, double dt) noexcept {
     const TickResult<double> result = solver_.tick(pose, dt);
     hand_over();
-    return {result.wrench, result.status, solver_.contacts()};
+    if constexpr (is_resolved)
+      return {result.wrench, result.status, solver_.contacts(), solver_.state().points()};
+    else
+      return {result.wrench, result.status, solver_.contacts(), {}};
   }
   /// The same where the object moves: both poses to world coordinates, in which the wrenches come, on the
   /// tool and on the object.
@@ -76,11 +81,11 @@ class Touch {
   template <Real T>
   Moved<double> draw(const VertexBuffer<T>& buffer) noexcept {
     handed_over_.fetch();
-    const Contacts& contacts = handed_over_.front();
+    const Drawn& drawn = handed_over_.front();
     const bool is_other = drawn_ != buffer.positions;
     if (is_other) solver_.draw_rest(buffer);
     drawn_ = buffer.positions;
-    Moved<double> moved = solver_.draw({contacts.begin(), contacts.size()}, buffer);
+    Moved<double> moved = solver_.draw({drawn.begin(), drawn.size()}, buffer);
     if (is_other && moved.vertices == 0) {
       moved.vertices = body_.mesh().vertices().size();
       moved.lower = body_.mesh().lower();
@@ -98,14 +103,21 @@ class Touch {
   [[nodiscard]] const ElasticBody& body() const noexcept { return body_; }
   [[nodiscard]] const Tool& tool() const noexcept { return tool_; }
   [[nodiscard]] const Solver& solver() const noexcept { return solver_; }
-  /// The force law F(D) at x, a position near the surface [m].
-  [[nodiscard]] typename Parts::Force::Local law_at(const Vec3<double>& x) const noexcept {
+  /// A ball's force law F(D) at x, a position near the surface [m].
+  [[nodiscard]] auto law_at(const Vec3<double>& x) const noexcept
+    requires(!is_resolved)
+  {
     return solver_.force_law().at(x);
   }
-  [[nodiscard]] const TouchFit& fit() const noexcept { return fit_; }
+  [[nodiscard]] const TouchFit& fit() const noexcept
+    requires(!is_resolved)
+  {
+    return fit_;
+  }
 
  private:
-  using Contacts = FixedVector<ContactState<double>, Solver::max_regions>;
+  // What the shape is drawn from: contacts, or loads at points.
+  using Drawn = FixedVector<DrawnBy<typename Parts::Shape>, Parts::max_drawn>;
 
   Touch(const ElasticBody& body, const Tool& tool, Parts&& parts, Friction friction)
       : body_(body),
@@ -119,17 +131,21 @@ class Touch {
                  .deformation = std::move(parts.shape)}) {}
 
   void hand_over() noexcept {
-    Contacts& contacts = handed_over_.back();
-    contacts.clear();
-    for (const ContactState<double>& contact : solver_.contacts()) contacts.push_back(contact);
+    Drawn& drawn = handed_over_.back();
+    if constexpr (is_resolved) {
+      solver_.state().loads(drawn);
+    } else {
+      drawn.clear();
+      for (const ContactState<double>& contact : solver_.contacts()) drawn.push_back(contact);
+    }
     handed_over_.publish();
   }
 
   ElasticBody body_;
   Tool tool_;
-  TouchFit fit_;
+  PALPATE_NO_UNIQUE_ADDRESS decltype(Parts::fit) fit_;
   Solver solver_;
-  TripleBuffer<Contacts> handed_over_;
+  TripleBuffer<Drawn> handed_over_;
   const void* drawn_ = nullptr;  // the last draw's buffer
 };
 

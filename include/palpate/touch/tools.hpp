@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Rigid tools for Touch: what touches, its nominal contact area, its centre of mass. Set-up only.
+/// @file Rigid tools for Touch: what touches, how finely, its centre of mass. Set-up only.
 ///
-/// | tool                       | tool coordinates [m]        | nominal contact area A_0              |
+/// | tool                       | tool coordinates [m]        | contact area to resolve A_0           |
 /// |----------------------------|-----------------------------|---------------------------------------|
-/// | `ball(radius)`             | about the origin            | none: it grows with depth             |
+/// | `ball(radius)`             | about the origin            | none: a point with a law              |
 /// | `capsule(radius, length)`  | about the origin, along y   | an end, in by a quarter of its radius |
 /// | `cylinder(radius, length)` | about the origin, along y   | an end's face                         |
 /// | `box(size)`                | about the origin            | the face across y                     |
@@ -25,7 +25,6 @@ struct BallTool {
 /// Any closed mesh, felt at even points on it.
 struct MeshTool {
   MeshData<double> mesh;
-  double contact_area = 0;                             ///< A_0 [m^2], > 0
   double spacing = 0;                                  ///< of the points [m], > 0
   Vec3<double> centre_of_mass = Vec3<double>::Zero();  ///< [m]
 };
@@ -33,8 +32,8 @@ struct MeshTool {
 /// What a tool made here may be told.
 struct ToolParams {
   Vec3<double> centre_of_mass = Vec3<double>::Zero();  ///< torques are about it [m]
-  double contact_area = 0;  ///< A_0 [m^2]: what is pressed flat on the body; 0: nominal, see above
-  double spacing = 0;       ///< of the points that feel [m]; 0: 60 on A_0, but at most 20,000 in all
+  double contact_area = 0;  ///< A_0 [m^2]: what is pressed on the body; 0: see above
+  double spacing = 0;       ///< of the points that feel [m]; 0: 40 on A_0, but at most 1,500 in all
 };
 
 [[nodiscard]] inline BallTool ball(double radius, const Vec3<double>& centre_of_mass = Vec3<double>::Zero()) {

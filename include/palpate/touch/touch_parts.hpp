@@ -3,31 +3,33 @@
 
 /// @file What Touch is made of, by the kind of tool: surface, law, regions and shape that suit it.
 ///
-/// | tool       | surface                 | law, fitted to     | regions       | shape                      |
-/// |------------|-------------------------|--------------------|---------------|----------------------------|
-/// | `BallTool` | samples, grown by R     | Hertz's, spheres   | `SinglePoint` | `ResponseBallDeformation`  |
-/// | `MeshTool` | samples                 | Duffing's, discs   | `Regions<4>`  | `ResponseFieldDeformation` |
+/// | tool       | surface             | force                           | shape                     |
+/// |------------|---------------------|---------------------------------|---------------------------|
+/// | `BallTool` | samples, grown by R | Hertz's law, fitted to spheres' | `ResponseBallDeformation` |
+/// | `MeshTool` | samples             | resolved at the tool's points   | `ResponseLoadDeformation` |
 
 #include <palpate/contact/topology.hpp>
+#include <palpate/core/absent.hpp>
 #include <palpate/geometry/grown_surface.hpp>
 #include <palpate/geometry/shared_surface.hpp>
-#include <palpate/law/map/duffing_map.hpp>
 #include <palpate/law/map/hertz_map.hpp>
+#include <palpate/resolved/contact_points.hpp>
+#include <palpate/resolved/elastic_contact.hpp>
+#include <palpate/resolved/response_compliance.hpp>
+#include <palpate/resolved/response_load_deformation.hpp>
 #include <palpate/response/ball_deformation.hpp>
-#include <palpate/response/deformation.hpp>
 #include <palpate/touch/detail/curved_surface.hpp>
 #include <palpate/touch/elastic_body.hpp>
 #include <palpate/touch/tools.hpp>
 
 namespace palpate {
 
-/// How well the law of a Touch fits the body's response field.
+/// How well a ball's law fits the body's response field.
 struct TouchFit {
   double worst_rms = 0;                       ///< of all positions: rms residual of F(D) over F's own rms [-]
   Vec3<double> where = Vec3<double>::Zero();  ///< there, on the undeformed surface [m]
   double depth = 0;                           ///< the law is fitted from 0 to here [m]
   double law_spacing = 0;                     ///< of the positions at which it is fitted [m]
-  double sample_spacing = 0;                  ///< of the surface's samples [m]
 };
 
 namespace detail {
@@ -41,6 +43,7 @@ struct TouchParts<BallTool> {
   using Force = HertzMap<double>;
   using Contacts = SinglePoint;
   using Shape = ResponseBallDeformation<double, CurvedSurface>;
+  static constexpr std::size_t max_drawn = 1;
 
   TouchParts(const ElasticBody& body, const BallTool& ball);
 
@@ -58,15 +61,16 @@ struct TouchParts<BallTool> {
 template <>
 struct TouchParts<MeshTool> {
   using Object = SampledSurface<SharedSurface<MeshSurface<double>>>;
-  using Force = DuffingMap<double>;
-  using Contacts = Regions<4>;
-  using Shape = ResponseFieldDeformation<double, 4>;
+  using Force = ElasticContact<double, ResponseCompliance>;
+  using Contacts = ContactPoints<256>;
+  static constexpr std::size_t max_drawn = Contacts::max_points;
+  using Shape = ResponseLoadDeformation<double, max_drawn>;
 
   TouchParts(const ElasticBody& body, const MeshTool& mesh);
 
   ToolPoints<double> tool;
-  Contacts contacts;
-  TouchFit fit;
+  Contacts contacts{};
+  Absent<0> fit;
   Object object;
   Force force;
   Shape shape;

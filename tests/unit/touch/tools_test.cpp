@@ -15,7 +15,7 @@ using V = Vec3<double>;
 constexpr double pi = std::numbers::pi;
 }  // namespace
 
-TEST_CASE("tools: closed meshes of the size asked for, with their nominal contact areas") {
+TEST_CASE("tools: closed meshes of the size asked for, with points as fine as their contact asks for") {
   const MeshTool rod = capsule(0.005, 0.02), pin = cylinder(0.002, 0.03), head = box(V(0.02, 0.01, 0.03));
   // Chords: of a circle of 48 they take off 0.3 %, of the pin's 24 1.1 %.
   CHECK_RELATIVE(TriangleMesh<double>(rod.mesh).volume(),
@@ -24,19 +24,18 @@ TEST_CASE("tools: closed meshes of the size asked for, with their nominal contac
   CHECK_RELATIVE(TriangleMesh<double>(head.mesh).volume(), 6e-6, 1e-12);
   CHECK(TriangleMesh<double>(rod.mesh).upper().isApprox(V(0.005, 0.015, 0.005), 1e-12));
   CHECK(TriangleMesh<double>(head.mesh).lower().isApprox(V(-0.01, -0.005, -0.015), 1e-12));
-  CHECK_RELATIVE(pin.contact_area, pi * 0.002 * 0.002, 1e-12);
-  CHECK_RELATIVE(head.contact_area, 6e-4, 1e-12);
-  CHECK_RELATIVE(pin.spacing, std::sqrt(pin.contact_area / 60), 1e-12);
+  CHECK_RELATIVE(pin.spacing * pin.spacing, pi * 0.002 * 0.002 / 40, 1e-12);
+  CHECK_RELATIVE(head.spacing * head.spacing, 6e-4 / 40, 1e-12);
   const MeshTool scanned = tool_mesh(head.mesh),
-                 told = tool_mesh(head.mesh,
-                                  {.centre_of_mass = V(0, 1, 0), .contact_area = 1e-4, .spacing = 1e-3});
-  CHECK_RELATIVE(scanned.contact_area, 0.1 * 2.2e-3, 1e-12);
-  CHECK(told.contact_area == 1e-4);
-  CHECK(told.spacing == 1e-3);
+                 told = tool_mesh(head.mesh, {.centre_of_mass = V(0, 1, 0), .contact_area = 1e-4}),
+                 fine = tool_mesh(head.mesh, {.contact_area = 1e-4, .spacing = 1e-3});
+  CHECK_RELATIVE(scanned.spacing * scanned.spacing, 0.1 * 2.2e-3 / 40, 1e-12);
+  CHECK_RELATIVE(told.spacing * told.spacing, 1e-4 / 40, 1e-12);
   CHECK(told.centre_of_mass == V(0, 1, 0));
-  // A needle has no more points than 20,000.
+  CHECK(fine.spacing == 1e-3);
+  // A needle has no more points than 1,500.
   const MeshTool needle = cylinder(0.0002, 0.2);
-  CHECK_RELATIVE(needle.spacing, std::sqrt(TriangleMesh<double>(needle.mesh).area() / 20000), 1e-12);
+  CHECK_RELATIVE(needle.spacing, std::sqrt(TriangleMesh<double>(needle.mesh).area() / 1500), 1e-12);
   CHECK(ball(0.01).radius == 0.01);
 }
 

@@ -5,6 +5,7 @@
 
 #include <palpate/calibrate/response_map.hpp>
 #include <palpate/geometry/mesh_extremal_points.hpp>
+#include <palpate/resolved/contact_samples.hpp>
 #include <palpate/touch/touch_parts.hpp>
 
 #include <algorithm>
@@ -17,7 +18,7 @@ namespace palpate::detail {
 inline constexpr double surface_samples = 3e5;
 inline constexpr double samples_on_radius = 4;
 // A ball is pressed in by at most this part of its radius when its law is fitted: where the field has been
-// compared with finite elements (docs/accuracy.md). A disc: by its radius.
+// compared with finite elements (docs/accuracy.md).
 inline constexpr double ball_depth = 0.6;
 // Chosen: with twice as many forces differ by less than 0.1 %.
 inline constexpr std::size_t law_points = 10;
@@ -67,25 +68,14 @@ PALPATE_COMPILED_INLINE TouchParts<BallTool>::TouchParts(const ElasticBody& body
                   fit)),
       shape(body.field(), body.mesh().data(), curved, {.radius = ball.radius}) {
   fit.depth = ball_depth * ball.radius;
-  fit.sample_spacing = object.spacing();
 }
 
 PALPATE_COMPILED_INLINE TouchParts<MeshTool>::TouchParts(const ElasticBody& body, const MeshTool& mesh)
-    : tool(TriangleMesh<double>(mesh.mesh),
-           {.contact_area = mesh.contact_area, .centre_of_mass = mesh.centre_of_mass}, mesh.spacing),
-      contacts{.distance = 2.5 * mesh.spacing},
+    : tool(contact_samples(TriangleMesh<double>(mesh.mesh), mesh.spacing),
+           {.contact_area = mesh.spacing * mesh.spacing, .centre_of_mass = mesh.centre_of_mass}),
       object(SharedSurface(body.surface()),
              {.spacing = sample_spacing(body.surface()->lower(), body.surface()->upper(), mesh.spacing)}),
-      force(taken(response_map(*body.field(), *body.surface(),
-                               {.radius = std::sqrt(mesh.contact_area / std::numbers::pi),
-                                .depth = std::sqrt(mesh.contact_area / std::numbers::pi),
-                                .spacing = law_spacing * body.field()->mesh().length,
-                                .points = law_points,
-                                .threads = body.threads()}),
-                  fit)),
-      shape(body.field(), body.mesh().data()) {
-  fit.depth = std::sqrt(mesh.contact_area / std::numbers::pi);
-  fit.sample_spacing = object.spacing();
-}
+      force({.compliance = ResponseCompliance(body.field())}),
+      shape(body.field(), body.mesh().data()) {}
 
 }  // namespace palpate::detail
