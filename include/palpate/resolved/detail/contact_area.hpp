@@ -15,7 +15,7 @@ namespace palpate::detail {
 /// Points beneath the surface that do not touch.
 class Unloaded {
  public:
-  using V = PointSystem::V;
+  using V = VectorList::V;
   explicit Unloaded(std::size_t capacity) { x_.resize(capacity); }
   void clear() noexcept { size_ = 0; }
   /// Precondition: fewer than the capacity.
@@ -36,7 +36,7 @@ class Unloaded {
   }
 
  private:
-  PointSystem::Vectors x_;
+  VectorList x_;
   std::size_t size_ = 0;
 };
 

@@ -1,23 +1,25 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file The two convex problems of a contact resolved at its points: pressures, and tractions at given
-/// pressures.
+/// @file The problem of a contact resolved at its points, without friction and with it.
 ///
-///     pressures   q >= 0,  A q - d >= 0,  q.(A q - d) = 0                            Signorini
-///     tractions   |t_i| <= g_i;  sticks: u_t = a;  slips: t_i = g_i along a - u_t     Coulomb, g = mu q
+///     q >= 0,  m.u - d >= 0,  one of them 0;  u = A P, q = m.P, t = P - q m           Signorini
+///     |t| <= mu q;  sticks: u_t = a;  slips: t = mu q along a - u_t                     Coulomb
 ///
-/// Pressures by conjugate gradients on the loaded points, tractions by projected gradients with Barzilai and
-/// Borwein's step: where a tool slides the discs hold every point, and conjugate gradients would begin anew
-/// each time. Both begin with the last tick's result, from which a tick's hardly differs: some 3
-/// iterations. A bound on them is kept; the residual says what is left. Source: [polonsky1999],
-/// [barzilai1988].
+/// Without friction by conjugate gradients on the loaded points. With friction by gradients of all loads at
+/// once, projected onto the cones, with Barzilai and Borwein's step: where a tool slides the cones hold every
+/// point, and conjugate gradients would begin anew each time. Both begin with the last tick's result, from
+/// which a tick's hardly differs: some 3 iterations. A bound on them is kept; the residual says what is left.
+/// Source: [polonsky1999], [barzilai1988].
 
 #include <palpate/core/aligned_list.hpp>
+#include <palpate/core/simd_math.hpp>
+#include <palpate/resolved/detail/vector_list.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace palpate::detail {
 
@@ -35,20 +37,24 @@ struct Residual {
 
 /// Lists of a solve, sized at set-up.
 struct PressureLists {
-  AlignedList<float> q, d, r, p, y;
+  AlignedList<float> q, r, p, y;
   void resize(std::size_t size) {
-    for (auto* list : {&q, &d, &r, &p, &y}) list->resize(size);
+    for (auto* list : {&q, &r, &p, &y}) list->resize(size);
   }
 };
 
-/// Pressures for the depths d; `apply(q, y)` gives y = A q; tolerance on the norm [m]. q is the
-/// start and the result, with r = A q - d.
+/// Pressures for the depths d; `apply(q, y)` gives y = A q; tolerance on the norm [m]. q is the start and the
+/// result, with r = A q - d.
 template <class Apply>
-[[nodiscard]] Remainder solve_pressures(std::size_t n, PressureLists& lists, float tolerance, int iterations,
-                                        const Apply& apply) noexcept {
+[[nodiscard]] Remainder solve_pressures(std::size_t n, PressureLists& lists, const float* d, float tolerance,
+                                        int iterations, const Apply& apply) noexcept {
   float *const q = lists.q.data(), *const r = lists.r.data(), *const p = lists.p.data(),
                *const y = lists.y.data();
-  const float* const d = lists.d.data();
+  const auto begin = [&] {
+    apply(q, r);
+    for (std::size_t i = 0; i < n; ++i) r[i] -= d[i];
+  };
+  begin();
   float before = 1;
   bool restart = true;
   Remainder result;
@@ -86,71 +92,87 @@ template <class Apply>
       r[i] -= step * y[i];
     }
     restart = clamped || overlap2 > 0;
-    if (clamped) {
-      apply(q, r);
-      for (std::size_t i = 0; i < n; ++i) r[i] -= d[i];
-    }
+    if (clamped) begin();
   }
 }
 
-/// Lists of a solve, sized at set-up: tractions, their limits, anchors, displacements, and what the iteration
-/// needs, each along two tangents.
-struct TractionLists {
-  AlignedList<float> limit, raised, s, t, as, at, us, ut, ps, pt, ys, yt;
-  float step = 0;  ///< the last tick's last; 0: none [1/m]
+/// Lists of a solve with friction, sized at set-up. Vectors: loads P on the body, displacements u, where
+/// points that stick hold the surface, a, and what an iteration changes.
+struct FrictionLists {
+  VectorList load, u, anchor, load_step, u_step;
+  AlignedList<float> held;  ///< 1 where the point has an anchor, 0 where it has just come in: no tractions
+  float step = 0;           ///< the last tick's last; 0: none [1/m]
+  float mu = 0;             ///< of the result
   void resize(std::size_t size) {
-    for (auto* list : {&limit, &raised, &s, &t, &as, &at, &us, &ut, &ps, &pt, &ys, &yt}) list->resize(size);
-  }
-  /// Moves the tractions of point i by (ds, dt), held within its disc; (ps, pt) is how far they went.
-  void move(std::size_t i, float ds, float dt) noexcept {
-    float ns = s[i] + ds, nt = t[i] + dt;
-    const float size2 = ns * ns + nt * nt;
-    if (size2 > limit[i] * limit[i]) {
-      const float shrink = limit[i] / std::sqrt(size2);
-      ns *= shrink, nt *= shrink;
-    }
-    ps[i] = ns - s[i], pt[i] = nt - t[i];
-    s[i] = ns, t[i] = nt;
+    for (auto* list : {&load, &u, &anchor, &load_step, &u_step}) list->resize(size);
+    held.resize(size);
   }
 };
 
-/// Tractions s, t within discs of radius `limit`, for the anchors as, at. (s, t) within the discs is the
-/// start and the result, with (us, ut) the displacements by pressures and tractions. `apply(s, t, us, ut)`:
-/// displacements by tractions.
-template <class Apply>
-[[nodiscard]] Remainder solve_tractions(std::size_t n, TractionLists& lists, float tolerance, int iterations,
-                                        const Apply& apply) noexcept {
-  float *const us = lists.us.data(), *const ut = lists.ut.data(), *const ps = lists.ps.data(),
-               *const pt = lists.pt.data(), *const ys = lists.ys.data(), *const yt = lists.yt.data();
-  const float *const s = lists.s.data(), *const t = lists.t.data(), *const limit = lists.limit.data(),
-                     *const as = lists.as.data(), *const at = lists.at.data();
+/// A load of normal part q >= 0 along m and tractions t, these within mu q.
+template <class V>
+[[nodiscard]] PALPATE_INLINE SimdVec3<V> within_cone(float mu, const SimdVec3<V>& m, const V& q,
+                                                     const SimdVec3<V>& t) noexcept {
+  const V t2 = dot(t, t), bound = V(mu) * q, tiny((std::numeric_limits<float>::min)());
+  return q * m + select(t2 > bound * bound, bound * inverse_sqrt((max)(t2, tiny)), V(1.f)) * t;
+}
+
+/// Loads for the depths d along m; `lists.load` is the start and the result, with u = A P. `apply(P, u)`
+/// gives u = A P; `coefficient(q)`: mu at the sum q of normal loads; `tangential`: of A's tangential over its
+/// normal size; tolerance on the norm [m].
+template <class Apply, class Coefficient>
+[[nodiscard]] Remainder solve_loads(std::size_t n, FrictionLists& lists, const VectorList& m, const float* d,
+                                    float tangential, float first_step, float tolerance, int iterations,
+                                    const Apply& apply, const Coefficient& coefficient) noexcept {
+  using V = VectorList::V;
+  const V zero(0.f), tiny((std::numeric_limits<float>::min)());
   Remainder result;
+  V total(0.f);
+  for (std::size_t i = 0; i < n; i += V::size()) total += (max)(dot(m.load(i), lists.load.load(i)), zero);
+  lists.mu = coefficient(reduce(total));
+  for (std::size_t i = 0; i < n; i += V::size()) {
+    const SimdVec3<V> mi = m.load(i), P = lists.load.load(i);
+    const V q = dot(mi, P);
+    lists.load.store(i, within_cone(lists.mu, mi, (max)(q, zero), V(&lists.held[i]) * (P - q * mi)));
+  }
+  if (lists.step == 0) lists.step = first_step;
+  apply(lists.load, lists.u);
   for (;; ++result.iterations) {
-    float size2 = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      float gs = as[i] - us[i], gt = at[i] - ut[i];
-      const float held2 = s[i] * s[i] + t[i] * t[i], outward = gs * s[i] + gt * t[i];
-      if (!(limit[i] > 0)) {
-        gs = gt = 0;
-      } else if (outward > 0 &&
-                 held2 >= 0.9999f * limit[i] * limit[i]) {  // slips: along the disc's rim alone
-        gs -= outward / held2 * s[i];
-        gt -= outward / held2 * t[i];
-      }
-      size2 += gs * gs + gt * gt;
+    const float mu = lists.mu = coefficient(reduce(total)), normal = lists.step,
+                across = lists.step / tangential;
+    V left(0.f), PP(0.f);
+    total = V(0.f);
+    for (std::size_t i = 0; i < n; i += V::size()) {
+      const SimdVec3<V> mi = m.load(i), P = lists.load.load(i), u = lists.u.load(i);
+      const V held(&lists.held[i]), q = dot(mi, P), limit = V(mu) * (max)(q, zero);
+      const SimdVec3<V> t = P - q * mi, from = u - lists.anchor.load(i);
+      const V gap = dot(mi, u) - V(d + i);
+      const SimdVec3<V> g = held * (from - dot(mi, from) * mi);
+      // What violates the conditions: a point that slips may do so along its disc's rim.
+      const V t2 = dot(t, t), out = (min)(dot(g, t), zero);
+      const SimdVec3<V> along = g - select(t2 < V(0.9999f) * limit * limit, zero, out / (max)(t2, tiny)) * t;
+      const V wrong = select(q > zero, gap, (min)(gap, zero));
+      left += wrong * wrong + select(limit > zero, dot(along, along), zero);
+      // A step down, held within the cone.
+      const V next = (max)(q - V(normal) * gap, zero);
+      const SimdVec3<V> step = within_cone(mu, mi, next, t - V(across) * g) - P;
+      const V dq = dot(mi, step);
+      PP += V(tangential) * dot(step, step) + V(1 - tangential) * dq * dq;
+      total += next;
+      lists.load_step.store(i, step);
     }
-    result.norm = std::sqrt(size2);
+    result.norm = std::sqrt(reduce(left));
     if (!(result.norm > tolerance) || result.iterations == iterations) return result;
-    for (std::size_t i = 0; i < n; ++i)
-      lists.move(i, lists.step * (as[i] - us[i]), lists.step * (at[i] - ut[i]));
-    apply(ps, pt, ys, yt);
-    float pp = 0, py = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      us[i] += ys[i], ut[i] += yt[i];
-      pp += ps[i] * ps[i] + pt[i] * pt[i];
-      py += ps[i] * ys[i] + pt[i] * yt[i];
+    apply(lists.load_step, lists.u_step);
+    V Pu(0.f);
+    for (std::size_t i = 0; i < n; i += V::size()) {
+      const SimdVec3<V> dP = lists.load_step.load(i), du = lists.u_step.load(i);
+      lists.load.store(i, lists.load.load(i) + dP);
+      lists.u.store(i, lists.u.load(i) + du);
+      Pu += dot(dP, du);
     }
-    if (py > 0) lists.step = pp / py;
+    const float moved = reduce(Pu);
+    if (moved > 0) lists.step = reduce(PP) / moved;
   }
 }
 

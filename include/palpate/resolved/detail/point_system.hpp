@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file What loads at a contact's points do to each other on the half-space: the matrices of a tick.
+/// @file What loads at a contact's points do to each other on the half-space: the matrix of a tick.
 ///
 ///     u_i = sum_j K_ij P_j,   P = f / (4 pi mu),   e = (X_i - X_j)/r,   b = 1 - 2 nu
 ///     K_ij = ((1 + b) I + (1 - b) e e^T + b (m e^T - e m^T)) / r                        Boussinesq, Cerruti
@@ -13,54 +13,34 @@
 /// on 50 points is 3.4 % too stiff, with this it is within 0.3 %. K_ji = K_ij^T: pairs i > j are kept.
 /// Source: [johnson1985], ch. 3; [marin2014].
 
-#include <palpate/core/aligned_list.hpp>
-#include <palpate/core/pose.hpp>
-#include <palpate/core/simd.hpp>
 #include <palpate/core/simd_math.hpp>
-#include <palpate/core/simd_vec3.hpp>
-#include <palpate/core/unroll.hpp>
+#include <palpate/resolved/detail/vector_list.hpp>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <vector>
+#include <cstdint>
 
 namespace palpate::detail {
 
-/// Points in contact and what they do to each other. Each has axes of its own: the direction in which it
-/// presses, into the body, and two tangents; loads and displacements are along these.
+/// Points in contact and what they do to each other. Each presses along a direction of its own, m, into the
+/// body. Without friction loads and displacements are along these, a number per point; with friction they are
+/// vectors in object coordinates.
 class PointSystem {
  public:
-  using V = native_simd<float>;
+  using V = VectorList::V;
   static constexpr float own_cell = 3.92f;
 
   /// A place that is far from all points, to fill up registers with [m].
   [[nodiscard]] static Vec3<float> apart() noexcept { return Vec3<float>::Constant(1e3f); }
-  /// Vectors of space, coordinate by coordinate.
-  struct Vectors {
-    AlignedList<float> x, y, z;
-    void resize(std::size_t n) { x.resize(n), y.resize(n), z.resize(n); }
-    [[nodiscard]] Vec3<float> operator[](std::size_t i) const noexcept { return {x[i], y[i], z[i]}; }
-    void set(std::size_t i, const Vec3<float>& v) noexcept { x[i] = v.x(), y[i] = v.y(), z[i] = v.z(); }
-    [[nodiscard]] PALPATE_INLINE SimdVec3<V> load(std::size_t i) const noexcept {
-      return {V(&x[i]), V(&y[i]), V(&z[i])};
-    }
-    PALPATE_INLINE void store(std::size_t i, const SimdVec3<V>& v) noexcept {
-      v.x.copy_to(&x[i]), v.y.copy_to(&y[i]), v.z.copy_to(&z[i]);
-    }
-  };
 
   PointSystem(std::size_t capacity, float compressibility, bool has_friction)
       : has_friction_(has_friction), b_(compressibility) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
-    for (auto* list : {&depth, &area_, &per_width_, &group_weight_}) list->resize(padded);
-    for (auto* list : {&x_at_, &x_, &n_, &group_x_, &group_n_}) list->resize(padded);
-    for (auto& axis : axis_) axis.resize(padded);
-    for (std::size_t k = 0; k < (has_friction ? 3 : 1); ++k) {
-      back_[k].resize(padded);
-      for (std::size_t l = 0; l < (has_friction ? 3 : 1); ++l) matrix_[k][l].resize(padded * capacity);
-    }
-    axes_.resize(capacity);
+    for (auto* list : {&depth, &area_, &per_width_, &group_weight_, &back_}) list->resize(padded);
+    for (auto* list : {&m_, &x_at_, &x_, &n_, &group_x_, &group_n_, &backs_}) list->resize(padded);
+    matrix_.resize((has_friction ? 9 : 1) * capacity *
+                   (capacity / 2 + 2 * V::size()));  // columns, each rounded up
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
@@ -94,15 +74,15 @@ class PointSystem {
     depth[size_] = deep;
     area_[size_++] = area;
   }
-  /// The direction of pressing, first and second tangent of point i, by column.
-  [[nodiscard]] const Mat3<float>& axes(std::size_t i) const noexcept { return axes_[i]; }
+  [[nodiscard]] const VectorList& directions() const noexcept { return m_; }  ///< of pressing
+  [[nodiscard]] Vec3<float> direction(std::size_t i) const noexcept { return m_[i]; }
   [[nodiscard]] Vec3<float> normal(std::size_t i) const noexcept { return n_[i]; }
   [[nodiscard]] Vec3<float> position(std::size_t i) const noexcept { return x_at_[i]; }
   [[nodiscard]] float area(std::size_t i) const noexcept { return area_[i]; }
   /// Where the load of point i acts on the undeformed surface.
   [[nodiscard]] Vec3<float> foot(std::size_t i) const noexcept { return x_[i]; }
 
-  /// Directions, depths along them, and matrices of all points.
+  /// Directions, depths along them, and the matrix of all points.
   void build() noexcept {
     stride_ = padded<V>(size_);
     for (std::size_t i = size_; i < stride_; ++i) {
@@ -110,64 +90,70 @@ class PointSystem {
       depth[i] = 0;
     }
     direct();
-    for (std::size_t j = 0; j < size_; ++j)
-      if (has_friction_)
-        column<3>(j);
-      else
-        column<1>(j);
+    float* to = matrix_.data();
+    for (std::size_t j = 0; j < size_; ++j) to = has_friction_ ? column<9>(j, to) : column<1>(j, to);
   }
 
-  struct Axes {
-    std::size_t first, count;
-  };
-  static constexpr Axes pressing{0, 1}, tangents{1, 2};
-  /// To u along some axes of each point come the displacements by loads along some axes.
-  template <Axes To, Axes From>
-  void add(const std::array<const float*, From.count>& load, const std::array<float*, To.count>& u) noexcept {
+  /// u = K q, both along the directions of pressing. Precondition: no friction; zeros beyond size().
+  void displace(const float* q, float* u) noexcept {
+    const float cell = own_cell * (1 + b_);
+    for (std::size_t i = 0; i < stride_; i += V::size()) (cell * V(&per_width_[i]) * V(q + i)).copy_to(u + i);
+    const float* k = matrix_.data();
     for (std::size_t j = 0; j < size_; ++j) {
-      std::array<std::array<const float*, From.count>, To.count> there, back;  // K_ij and its transpose
-      unroll<To.count>([&](std::size_t k) PALPATE_INLINE_LAMBDA {
-        unroll<From.count>([&](std::size_t l) PALPATE_INLINE_LAMBDA {
-          there[k][l] = matrix_[To.first + k][From.first + l].data() + j * stride_;
-          back[k][l] = matrix_[From.first + l][To.first + k].data() + j * stride_;
-        });
-      });
-      std::array<V, To.count> of_others{};
-      std::array<V, From.count> own;
-      unroll<From.count>([&](std::size_t l) PALPATE_INLINE_LAMBDA { own[l] = V(load[l][j]); });
-      for (std::size_t i = j / V::size() * V::size(); i < stride_; i += V::size())
-        unroll<To.count>([&](std::size_t k) PALPATE_INLINE_LAMBDA {
-          V sum(u[k] + i);
-          unroll<From.count>([&](std::size_t l) PALPATE_INLINE_LAMBDA {
-            sum += own[l] * V(there[k][l] + i);
-            of_others[k] += V(load[l] + i) * V(back[k][l] + i);
-          });
-          store(u[k] + i, sum);
-        });
+      const V own(q[j]);
+      V back{};
+      for (std::size_t i = first_of(j); i < stride_; i += V::size(), k += V::size()) {
+        const V K(k);
+        (V(u + i) + K * own).copy_to(u + i);
+        back += K * V(q + i);
+      }
       // Kept apart for now: a number that is written into u would hold up the registers that read it next.
-      unroll<To.count>([&](std::size_t k) PALPATE_INLINE_LAMBDA { back_[k][j] = reduce(of_others[k]); });
+      back_[j] = reduce(back);
     }
-    for (std::size_t k = 0; k < To.count; ++k)
-      for (std::size_t j = 0; j < size_; ++j) u[k][j] += back_[k][j];
-    if constexpr (To.first == From.first) {
-      const float cell = own_cell * (To.first == 0 ? 1 + b_ : 1.5f + b_ / 2);
-      for (std::size_t k = 0; k < To.count; ++k)
-        for (std::size_t j = 0; j < size_; ++j) u[k][j] += cell * per_width_[j] * load[k][j];
+    for (std::size_t i = 0; i < stride_; i += V::size()) (V(u + i) + V(&back_[i])).copy_to(u + i);
+  }
+  /// u = K P. Precondition: friction; zeros beyond size().
+  void displace(const VectorList& P, VectorList& u) noexcept {
+    const V along(own_cell * (1 + b_)), across(own_cell * (1.5f + b_ / 2));
+    for (std::size_t i = 0; i < stride_; i += V::size()) {
+      const SimdVec3<V> m = m_.load(i), load = P.load(i), cell = V(&per_width_[i]) * load;
+      u.store(i, across * cell + ((along - across) * dot(m, cell)) * m);
     }
+    const float* k = matrix_.data();
+    for (std::size_t j = 0; j < size_; ++j) {
+      const SimdVec3<V> own = each(P[j]);
+      SimdVec3<V> back{V(0.f), V(0.f), V(0.f)};
+      for (std::size_t i = first_of(j); i < stride_; i += V::size(), k += 9 * V::size()) {
+        const auto K = [k](std::size_t row, std::size_t col)
+                           PALPATE_INLINE_LAMBDA { return V(k + (3 * row + col) * V::size()); };
+        const SimdVec3<V> other = P.load(i);
+        SimdVec3<V> sum = u.load(i);
+        const V xx = K(0, 0), yy = K(1, 1), zz = K(2, 2), xy = K(0, 1), yx = K(1, 0), xz = K(0, 2),
+                zx = K(2, 0), yz = K(1, 2), zy = K(2, 1);
+        sum.x += xx * own.x + xy * own.y + xz * own.z;
+        sum.y += yx * own.x + yy * own.y + yz * own.z;
+        sum.z += zx * own.x + zy * own.y + zz * own.z;
+        back.x += xx * other.x + yx * other.y + zx * other.z;
+        back.y += xy * other.x + yy * other.y + zy * other.z;
+        back.z += xz * other.x + yz * other.y + zz * other.z;
+        u.store(i, sum);
+      }
+      backs_.set(j, {reduce(back.x), reduce(back.y), reduce(back.z)});
+    }
+    for (std::size_t i = 0; i < stride_; i += V::size()) u.store(i, u.load(i) + backs_.load(i));
   }
-  /// A step of tractions that is stable for a single point, and short of what all could take [1/m].
-  [[nodiscard]] float flexible_step() const noexcept {
-    return 1 / ((1.5f + b_ / 2) * own_cell * per_width_[0]);
-  }
+  /// Of the tangential over the normal response, all over the contact.
+  [[nodiscard]] float tangential_share() const noexcept { return (1.5f + b_ / 2) / (1 + b_); }
+  /// A step of normal loads that is stable for a single point, and short of what all could take [1/m].
+  [[nodiscard]] float flexible_step() const noexcept { return 1 / ((1 + b_) * own_cell * per_width_[0]); }
+
   /// The displacement along n at a further point of the surface by the pressures q.
   [[nodiscard]] float normal_displacement_at(const float* q, const Vec3<float>& x, const Vec3<float>& n,
                                              float area) const noexcept {
-    const Kernel kernel(b_);
     V sum{};
     for (std::size_t i = 0; i < stride_; i += V::size()) {
-      const SimdVec3<V> mi = axis_[0].load(i);
-      const Pair pair = between(i, x, mi, each(n), area);
-      sum += V(q + i) * dot(mi, kernel(pair, each(n)));
+      const SimdVec3<V> mi = m_.load(i);
+      sum += V(q + i) * dot(mi, pushed(between(i, x, mi, each(n), area), each(n)));
     }
     return reduce(sum);
   }
@@ -192,13 +178,12 @@ class PointSystem {
     const SimdVec3<W> mixed = share * m + (1.f - share) * n;
     return inverse_sqrt(dot(mixed, mixed)) * mixed;
   }
-
   [[nodiscard]] Vec3<float> direction_at(const Vec3<float>& x, const Vec3<float>& n) const noexcept {
     const SimdVec3<float> m = direction(each<float>(x), each<float>(n));
     return {m.x, m.y, m.z};
   }
 
-  AlignedList<float> depth;  ///< along the first axes [m]
+  AlignedList<float> depth;  ///< along the directions of pressing [m]
 
  private:
   struct Pair {
@@ -206,12 +191,9 @@ class PointSystem {
     SimdVec3<V> e;  // from j to i
     SimdVec3<V> m;  // mean of both directions of pressing
   };
-  template <SimdOrReal W = V>
-  [[nodiscard]] static PALPATE_INLINE SimdVec3<W> each(const Vec3<float>& v) noexcept {
-    return {W(v.x()), W(v.y()), W(v.z())};
-  }
+  [[nodiscard]] static std::size_t first_of(std::size_t j) noexcept { return j / V::size() * V::size(); }
 
-  // Axes, depths along the first of them, and feet.
+  // Directions, depths along them, and feet.
   void direct() noexcept {
     for (std::size_t i = 0; i < size_; ++i) per_width_[i] = 1 / std::sqrt(area_[i]);
     per_size2_ = deepest_ / (2 * volume_);
@@ -221,18 +203,12 @@ class PointSystem {
       const V deep = V(&depth[i]) / dot(m, n);
       deep.copy_to(&depth[i]);
       x_.store(i, x_at_.load(i) - deep * m);
-      axis_[0].store(i, m);
+      m_.store(i, m);
     }
     for (std::size_t i = size_; i < stride_; ++i) {  // what fills up presses on no point
       x_.set(i, apart());
-      for (auto& axis : axis_) axis.set(i, Vec3<float>::Zero());
-    }
-    for (std::size_t i = 0; i < size_; ++i) {
-      Mat3<float>& axes = axes_[i];
-      axes.col(0) = axis_[0][i];
-      axes.col(1) = perpendicular(axis_[0][i]);
-      axes.col(2) = axes.col(0).cross(axes.col(1));
-      for (std::size_t k = 1; k < 3; ++k) axis_[k].set(i, axes.col(Eigen::Index(k)));
+      m_.set(i, Vec3<float>::Zero());
+      per_width_[i] = 0;
     }
   }
 
@@ -245,39 +221,42 @@ class PointSystem {
     const V inverse = inverse_sqrt((max)(dot(r, r), V(0.26f * area)));
     return {inverse, inverse * r, V(0.5f) * (mi + m)};
   }
-  struct Kernel {
-    V b, plus, minus;  // 1 + b, 1 - b
-    explicit PALPATE_INLINE Kernel(float c) noexcept : b(c), plus(1 + c), minus(1 - c) {}
-    // K_ij f.
-    [[nodiscard]] PALPATE_INLINE SimdVec3<V> operator()(const Pair& p, const SimdVec3<V>& f) const noexcept {
-      const V along = dot(p.e, f);
-      return (plus * p.inverse) * f + (p.inverse * (minus * along - b * dot(p.m, f))) * p.e +
-             (p.inverse * b * along) * p.m;
-    }
-  };
-  template <std::size_t count>
-  void column(std::size_t j) noexcept {
+  // K_ij f.
+  [[nodiscard]] PALPATE_INLINE SimdVec3<V> pushed(const Pair& p, const SimdVec3<V>& f) const noexcept {
+    const V b(b_), along = dot(p.e, f);
+    return (V(1 + b_) * p.inverse) * f + (p.inverse * (V(1 - b_) * along - b * dot(p.m, f))) * p.e +
+           (p.inverse * b * along) * p.m;
+  }
+  // Column j of the matrix, of what is at and below the diagonal, to `to`; by entries in each register's
+  // rows: one along the directions of pressing, or nine. Returns its end.
+  template <std::size_t entries>
+  float* column(std::size_t j, float* to) noexcept {
     const Vec3<float> x = x_[j];
-    std::array<SimdVec3<V>, count> axes;
-    for (std::size_t l = 0; l < count; ++l) axes[l] = each(axes_[j].col(Eigen::Index(l)));
-    std::array<std::array<float*, count>, count> to;
-    for (std::size_t k = 0; k < count; ++k)
-      for (std::size_t l = 0; l < count; ++l) to[k][l] = matrix_[k][l].data() + j * stride_;
+    const SimdVec3<V> m = each(m_[j]);
     const float area = area_[j];
-    const Kernel kernel(b_);
-    const std::size_t first = j / V::size() * V::size();
-    for (std::size_t i = first; i < stride_; i += V::size()) {
-      std::array<SimdVec3<V>, count> at;
-      unroll<count>([&](std::size_t k) PALPATE_INLINE_LAMBDA { at[k] = axis_[k].load(i); });
-      const Pair pair = between(i, x, at[0], axes[0], area);
-      unroll<count>([&](std::size_t l) PALPATE_INLINE_LAMBDA {
-        const SimdVec3<V> u = kernel(pair, axes[l]);
-        unroll<count>([&](std::size_t k) PALPATE_INLINE_LAMBDA { store(to[k][l] + i, dot(at[k], u)); });
-      });
+    float* const first = to;
+    for (std::size_t i = first_of(j); i < stride_; i += V::size(), to += entries * V::size()) {
+      const SimdVec3<V> mi = m_.load(i);
+      const Pair p = between(i, x, mi, m, area);
+      if constexpr (entries == 1) {
+        dot(mi, pushed(p, m)).copy_to(to);
+      } else {
+        const auto put = [to](std::size_t row, std::size_t col, const V& K)
+                             PALPATE_INLINE_LAMBDA { K.copy_to(to + (3 * row + col) * V::size()); };
+        const V even = V(1 + b_) * p.inverse;
+        const SimdVec3<V> by_e = (V(1 - b_) * p.inverse) * p.e, turn = cross(p.m, (V(b_) * p.inverse) * p.e);
+        const V xy = by_e.x * p.e.y, yz = by_e.y * p.e.z, zx = by_e.z * p.e.x;
+        put(0, 0, even + by_e.x * p.e.x);
+        put(1, 1, even + by_e.y * p.e.y);
+        put(2, 2, even + by_e.z * p.e.z);
+        put(0, 1, xy + turn.z), put(1, 0, xy - turn.z);
+        put(1, 2, yz + turn.x), put(2, 1, yz - turn.x);
+        put(2, 0, zx + turn.y), put(0, 2, zx - turn.y);
+      }
     }
-    for (std::size_t i = first; i <= j; ++i)
-      for (std::size_t k = 0; k < count; ++k)
-        for (std::size_t l = 0; l < count; ++l) to[k][l][i] = 0;
+    for (std::size_t i = first_of(j); i <= j; ++i)
+      for (std::size_t k = 0; k < entries; ++k) first[k * V::size() + i - first_of(j)] = 0;
+    return to;
   }
 
   std::size_t size_ = 0, stride_ = 0, groups_ = 0;
@@ -286,13 +265,12 @@ class PointSystem {
   float b_ = 0;  // 1 - 2 nu
   float deepest_ = 0, volume_ = 0,
         per_size2_ = 1;  // the volume pressed over the depth: a ball's contact area
-  std::vector<Mat3<float>> axes_;
   AlignedList<float> area_, per_width_, group_weight_;
-  Vectors x_at_, x_, n_;       // the points, their feet, normals
-  Vectors group_x_, group_n_;  // sums over a group by depth and area; x: the mean
-  std::array<Vectors, 3> axis_;
-  std::array<std::array<AlignedList<float>, 3>, 3> matrix_;  // by axes of i and j, i > j, each by column
-  std::array<AlignedList<float>, 3> back_;                   // of add()
+  VectorList m_, x_at_, x_, n_;   // directions of pressing, the points, their feet, normals
+  VectorList group_x_, group_n_;  // sums over a group by depth and area; x: the mean
+  AlignedList<float> matrix_;     // pairs i > j by column, in the order in which it is made and read
+  AlignedList<float> back_;       // of displace(), without friction and with it
+  VectorList backs_;
 };
 
 }  // namespace palpate::detail

@@ -68,32 +68,15 @@ class RegularPart {
       }
   }
 
-  /// y += w along the normals of forces q along them.
-  void add_normal(const PointSystem& system, const float* q, float* y) noexcept {
-    gather_pressures(system, q);
-    for (std::size_t i = 0; i < size_; ++i) y[i] += system.axes(i).col(0).dot(of(i));
+  /// u += w along the directions of pressing, by loads q along them.
+  void add(const PointSystem& system, const float* q, float* u) noexcept {
+    gather([&](std::size_t i) { return Vec3<float>(q[i] * system.direction(i)); });
+    for (std::size_t i = 0; i < size_; ++i) u[i] += system.direction(i).dot(of(i));
   }
-  void add_normal_by_tractions(const PointSystem& system, const float* s, const float* t, float* y) noexcept {
-    gather_tractions(system, s, t);
-    for (std::size_t i = 0; i < size_; ++i) y[i] += system.axes(i).col(0).dot(of(i));
-  }
-  void add_tangential(const PointSystem& system, const float* s, const float* t, float* us,
-                      float* ut) noexcept {
-    gather_tractions(system, s, t);
-    scatter(system, us, ut);
-  }
-  void add_tangential_by_pressures(const PointSystem& system, const float* q, float* us, float* ut) noexcept {
-    gather_pressures(system, q);
-    scatter(system, us, ut);
-  }
-  /// The nodes' displacements by pressures alone, by tractions alone.
-  void gather_pressures(const PointSystem& system, const float* q) noexcept {
-    gather([&](std::size_t i) { return Vec3<float>(q[i] * system.axes(i).col(0)); });
-  }
-  void gather_tractions(const PointSystem& system, const float* s, const float* t) noexcept {
-    gather([&](std::size_t i) {
-      return Vec3<float>(s[i] * system.axes(i).col(1) + t[i] * system.axes(i).col(2));
-    });
+  /// u += w by loads P.
+  void add(const PointSystem&, const VectorList& P, VectorList& u) noexcept {
+    gather([&](std::size_t i) { return P[i]; });
+    for (std::size_t i = 0; i < size_; ++i) u.set(i, u[i] + of(i));
   }
   /// The nodes' displacements by load(i) at the points.
   template <class Load>
@@ -127,7 +110,7 @@ class RegularPart {
     for (std::size_t i = 0; i < size_; ++i) {
       w_[i] = system.normal(i).dot(of(i));
       sum += q[i], mean_w += q[i] * w_[i];
-      mean_x += q[i] * system.foot(i), m += q[i] * system.axes(i).col(0);
+      mean_x += q[i] * system.foot(i), m += q[i] * system.direction(i);
     }
     if (!(sum > 0)) return Vec3<float>::Zero();
     mean_x /= sum, mean_w /= sum, m.normalize();
@@ -225,14 +208,6 @@ class RegularPart {
     for (const Weight& w : weights) sum += Four(w.value) * Four(&u_[4 * w.node]);
     return {sum[0], sum[1], sum[2]};
   }
-  void scatter(const PointSystem& system, float* us, float* ut) const noexcept {
-    for (std::size_t i = 0; i < size_; ++i) {
-      const Vec3<float> w = of(i);
-      us[i] += system.axes(i).col(1).dot(w);
-      ut[i] += system.axes(i).col(2).dot(w);
-    }
-  }
-
   std::vector<std::uint16_t> slot_of_;  // of a load mesh's node, or none
   std::vector<std::uint32_t> node_;     // of a slot
   std::vector<std::uint32_t> tick_of_;  // when a slot was in use last; 0: never

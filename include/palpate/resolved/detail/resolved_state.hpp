@@ -42,7 +42,7 @@ class ResolvedState {
         regular_(body, capacity) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
     pressure_.resize(padded);
-    if constexpr (has_friction) traction_.resize(padded);
+    if constexpr (has_friction) friction_.resize(padded);
   }
 
   void reset() noexcept {
@@ -62,7 +62,7 @@ class ResolvedState {
       const Touching& at = touching_[inside_[i]];
       const Point& p = points_[at.point];
       if (!p.loaded) continue;
-      out.push_back({origin_ + system_.foot(i).template cast<S>(), system_.axes(i).col(0).template cast<S>(),
+      out.push_back({origin_ + system_.foot(i).template cast<S>(), system_.direction(i).template cast<S>(),
                      per_load_ * p.load.template cast<S>(), static_cast<S>(system_.area(i))});
     }
   }
@@ -119,6 +119,7 @@ class ResolvedState {
     }
     for (int round = 0; round < 4; ++round) {
       build(force, tool);
+      begin_loads(round == 0 ? predicted() : 1.f);
       solve_inside(force, friction, tolerance);
       if (!take_in(force, tool, tolerance)) break;
     }
@@ -129,7 +130,8 @@ class ResolvedState {
   using RegularPart = typename RegularPartOf<Compliance>::type;
   /// Points whose gap was less than this share of the depth are solved for at once.
   static constexpr float near = 0.05f;
-  static constexpr int max_turns = 4;
+  /// Of predicted(): a tick that moves further than this many times the last one begins from rest.
+  static constexpr float most_predicted = 3;
 
   using Point = PointMemory;
   using Touching = TouchingPoint<S>;
@@ -141,7 +143,7 @@ class ResolvedState {
   void forget() noexcept {
     slides_ = false;
     strength_ = {};
-    if constexpr (has_friction) traction_.step = 0;
+    if constexpr (has_friction) friction_.step = 0;
   }
   [[nodiscard]] Point& point(std::size_t i) noexcept { return points_[touching_[inside_[i]].point]; }
 
@@ -164,93 +166,64 @@ class ResolvedState {
                      point(i).triangle);
       regular_.build();
     }
-    for (std::size_t i = 0; i < size(); ++i) {
-      const Vec3<float> P = system_.axes(i).transpose() * point(i).load;
-      pressure_.q[i] = (std::max)(P.x(), 0.f);
-      if constexpr (has_friction) traction_.s[i] = P.y(), traction_.t[i] = P.z();
-    }
-    for (std::size_t i = size(); i < system_.stride(); ++i) {
-      pressure_.q[i] = 0;
-      if constexpr (has_friction) traction_.s[i] = traction_.t[i] = 0;
-    }
   }
 
   template <class Friction>
   void solve_inside(const Force& force, const Friction& friction, float tolerance) noexcept {
     const int iterations = force.params().iterations;
-    const float per_norm = static_cast<float>(force.params().tolerance) / tolerance;
-    const std::size_t n = size();
-    const auto pressures = [&] {
-      const Remainder left = solve_pressures(n, pressure_, tolerance, iterations,
-                                             [&](const float* q, float* y) noexcept { normal_by(q, y); });
-      residual_.iterations += left.iterations;
-      return left;
-    };
-    normal_by(pressure_.q.data(), pressure_.r.data());
-    for (std::size_t i = 0; i < n; ++i) {
-      pressure_.d[i] = system_.depth[i];
-      pressure_.r[i] -= pressure_.d[i];
-    }
+    Remainder left;
     if constexpr (!has_friction) {
-      residual_.relative = pressures().norm * per_norm;
+      const auto apply = [this](const float* q, float* u) noexcept { displace(q, u); };
+      left = solve_pressures(size(), pressure_, system_.depth.data(), tolerance, iterations, apply);
     } else {
-      for (std::size_t i = 0; i < n; ++i) traction_.raised[i] = 0;
-      // Pressures and tractions in turns: they hardly depend on each other.
-      float mu = 0;
-      Remainder dragged;
-      for (int turn = 0;; ++turn) {
-        raise_by_tractions();
-        const Remainder pressed = pressures();
-        residual_.relative = (std::max)(pressed.norm, dragged.norm) * per_norm;
-        // Done where what the tractions change is within the tolerance.
-        if (turn == max_turns || (turn > 0 && pressed.iterations == 0)) return;
-        if (turn == 0) mu = coefficient(force, friction);
-        for (std::size_t i = 0; i < n; ++i) {
-          traction_.limit[i] = mu * pressure_.q[i];
-          traction_.move(i, 0, 0);
-        }
-        begin_tractions();
-        if (turn == 0) begin_anchors();
-        dragged = solve_tractions(n, traction_, tolerance, iterations,
-                                  [&](const float* s, const float* t, float* us, float* ut) noexcept {
-                                    tangential_by(s, t, us, ut);
-                                  });
-        residual_.iterations += dragged.iterations;
+      left = solve_loads(
+          size(), friction_, system_.directions(), system_.depth.data(), system_.tangential_share(),
+          system_.flexible_step(), tolerance, iterations,
+          [this](const VectorList& P, VectorList& u) noexcept { displace(P, u); },
+          [&](float q) noexcept { return coefficient(friction, force, q); });
+      for (std::size_t i = 0; i < size(); ++i) {
+        const Vec3<float> m = system_.direction(i);
+        pressure_.q[i] = (std::max)(m.dot(friction_.load[i]), 0.f);
+        pressure_.r[i] = m.dot(friction_.u[i]) - system_.depth[i];
       }
     }
+    residual_.iterations += left.iterations;
+    residual_.relative = left.norm * static_cast<float>(force.params().tolerance) / tolerance;
   }
-  void clear(float* u) const noexcept {
-    for (std::size_t i = 0; i < system_.stride(); ++i) u[i] = 0;
+  void displace(const auto& loads, auto&& u) noexcept {
+    system_.displace(loads, u);
+    if constexpr (RegularPart::active) regular_.add(system_, loads, u);
   }
-  void normal_by(const float* q, float* y) noexcept {
-    clear(y);
-    system_.template add<PointSystem::pressing, PointSystem::pressing>({q}, {y});
-    if constexpr (RegularPart::active) regular_.add_normal(system_, q, y);
-  }
-  void tangential_by(const float* s, const float* t, float* us, float* ut) noexcept {
-    clear(us), clear(ut);
-    system_.template add<PointSystem::tangents, PointSystem::tangents>({s, t}, {us, ut});
-    if constexpr (RegularPart::active) regular_.add_tangential(system_, s, t, us, ut);
-  }
-  // Depths and residuals of the pressures, with what the tractions raise.
-  void raise_by_tractions() noexcept {
-    float* const y = pressure_.y.data();
-    clear(y);
-    const float *const s = traction_.s.data(), *const t = traction_.t.data();
-    system_.template add<PointSystem::pressing, PointSystem::tangents>({s, t}, {y});
-    if constexpr (RegularPart::active) regular_.add_normal_by_tractions(system_, s, t, y);
+  /// How much of what the last tick changed goes on: displacements that go on alike meet the conditions best.
+  [[nodiscard]] float predicted() noexcept {
+    float meets = 0, size2 = 0;
     for (std::size_t i = 0; i < size(); ++i) {
-      pressure_.d[i] = system_.depth[i] - y[i];
-      pressure_.r[i] += y[i] - std::exchange(traction_.raised[i], y[i]);
+      const Point& p = point(i);
+      if (!p.loaded) continue;
+      const Vec3<float> m = system_.direction(i);
+      const float lacks = system_.depth[i] - m.dot(p.u), goes = m.dot(p.u_step);
+      meets += lacks * goes, size2 += goes * goes;
+      if (!p.sticks) continue;
+      const Vec3<float> across = tangential<float>(p.u_step, m);
+      meets += across.dot(p.anchor - p.u), size2 += across.squaredNorm();
     }
+    return size2 > 0 ? clamp(meets / size2, -most_predicted, most_predicted) : 0.f;
   }
-  void begin_tractions() noexcept {
-    float *const us = traction_.us.data(), *const ut = traction_.ut.data();
-    tangential_by(traction_.s.data(), traction_.t.data(), us, ut);
-    const float* const q = pressure_.q.data();
-    system_.template add<PointSystem::tangents, PointSystem::pressing>({q}, {us, ut});
-    if constexpr (RegularPart::active) regular_.add_tangential_by_pressures(system_, q, us, ut);
-    if (traction_.step == 0) traction_.step = system_.flexible_step();
+  void begin_loads(float share) noexcept {
+    for (std::size_t i = 0; i < size(); ++i) {
+      const Point& p = point(i);
+      const Vec3<float> P = p.load + share * p.load_step, m = system_.direction(i);
+      pressure_.q[i] = (std::max)(m.dot(P), 0.f);
+      if constexpr (has_friction) {
+        friction_.load.set(i, P);
+        friction_.held[i] = p.loaded ? 1.f : 0.f;
+        friction_.anchor.set(i, p.anchor);
+      }
+    }
+    for (std::size_t i = size(); i < system_.stride(); ++i) {
+      pressure_.q[i] = 0;
+      if constexpr (has_friction) friction_.load.set(i, Vec3<float>::Zero()), friction_.held[i] = 0;
+    }
   }
 
   /// Takes in points that the surface has not given way to. False where there are none.
@@ -258,7 +231,7 @@ class ResolvedState {
     const std::size_t n = size();
     std::size_t next = 0;
     bool more = false;
-    if constexpr (RegularPart::active) regular_.gather_pressures(system_, pressure_.q.data());
+    if constexpr (RegularPart::active) regular_.gather([this](std::size_t i) { return load(i); });
     for (std::uint32_t c = 0; c < touching_.size(); ++c) {
       if (next < n && inside_[next] == c) {
         ++next;
@@ -283,7 +256,8 @@ class ResolvedState {
       }
     }
     if (!more) return false;
-    for (std::size_t i = 0; i < n; ++i) store_load(i);  // the next round begins there
+    for (std::size_t i = 0; i < n; ++i)
+      point(i).load_step = load(i) - point(i).load;  // the next round's begin
     std::sort(inside_.begin(), inside_.end());
     return true;
   }
@@ -294,83 +268,71 @@ class ResolvedState {
       if (p.loaded) p.anchor += Vec3<S>(c.x - before * tool.point(c.point)).template cast<float>();
     }
   }
-  /// A point that has just come into contact holds the surface where it is.
-  void begin_anchors() noexcept {
-    for (std::size_t i = 0; i < size(); ++i) {
-      const Mat3<float>& axes = system_.axes(i);
-      if (point(i).loaded) {
-        traction_.as[i] = axes.col(1).dot(point(i).anchor);
-        traction_.at[i] = axes.col(2).dot(point(i).anchor);
-      } else {
-        traction_.as[i] = traction_.us[i], traction_.at[i] = traction_.ut[i];
-      }
-    }
-  }
-  /// mu of every point: the law's limit of the whole contact over its normal force.
+  /// mu of every point: the law's limit of the whole contact over its normal force, of loads q.
   template <class Friction>
-  float coefficient(const Force& force, const Friction& friction) noexcept {
-    double sum = 0;
-    for (std::size_t i = 0; i < size(); ++i) sum += double(pressure_.q[i]);
-    const S normal = static_cast<S>(sum * 4 * std::numbers::pi * force.shear_modulus());
-    if (!(normal > S(0))) return 0;
-    return strength_.coefficient(friction, normal);
+  float coefficient(const Friction& friction, const Force& force, float q) noexcept {
+    const S normal = static_cast<S>(q) * static_cast<S>(4 * std::numbers::pi * force.shear_modulus());
+    return normal > S(0) ? strength_.coefficient(friction, normal) : 0.f;
   }
-  // Static strength fades as the tool slides over the surface.
-  void fade() noexcept {
+  // Static strength fades as the tool slides over the surface; points that have just come in do not hold it.
+  void remember_strength(float total, float sticking) noexcept {
+    slides_ = total > 0 && sticking < 0.01f * total;
+    if (!slides_) return strength_.hold(total > 0 ? sticking / total : 1.f);
     Vec3<float> slip = Vec3<float>::Zero(), stretch = Vec3<float>::Zero();
     for (std::size_t i = 0; i < size(); ++i) {
-      const float q = pressure_.q[i], us = traction_.us[i], ut = traction_.ut[i];
-      const Mat3<float>& axes = system_.axes(i);
-      slip += q * ((traction_.as[i] - us) * axes.col(1) + (traction_.at[i] - ut) * axes.col(2));
-      stretch += q * (us * axes.col(1) + ut * axes.col(2));
+      const Vec3<float> m = system_.direction(i), u = tangential<float>(friction_.u[i], m);
+      if (friction_.held[i] > 0) slip += pressure_.q[i] * (tangential<float>(friction_.anchor[i], m) - u);
+      stretch += pressure_.q[i] * u;
     }
     strength_.fade(slip.norm(), stretch.norm());
   }
-  void store_load(std::size_t i) noexcept {
-    Vec3<float> P(pressure_.q[i], 0, 0);
-    if constexpr (has_friction) P.y() = traction_.s[i], P.z() = traction_.t[i];
-    point(i).load = system_.axes(i) * P;
+  [[nodiscard]] Vec3<float> load(std::size_t i) const noexcept {
+    if constexpr (has_friction)
+      return friction_.load[i];
+    else
+      return pressure_.q[i] * system_.direction(i);
+  }
+  [[nodiscard]] Vec3<float> displacement(std::size_t i) const noexcept {
+    if constexpr (has_friction)
+      return friction_.u[i];
+    else
+      return (pressure_.r[i] + system_.depth[i]) * system_.direction(i);
   }
 
   void finish(const Force& force, const ToolPoints<S>& tool) noexcept {
     const S scale = per_load_ = static_cast<S>(4 * std::numbers::pi * force.shear_modulus());
-    bool any_sticks = false;
-    for (const Touching& c : touching_) points_[c.point].loaded = false;
-    for (std::size_t i = 0; i < size(); ++i) store_load(i);
+    for (std::size_t i = 0; i < size(); ++i) point(i).go_on(load(i), displacement(i));
     Vec3<float> slope = Vec3<float>::Zero();
     if constexpr (RegularPart::active)
       slope = regular_.slope(system_, pressure_.q.data(), [this](std::size_t i) { return point(i).load; });
+    float total = 0, sticking = 0;
     for (std::size_t i = 0; i < size(); ++i) {
       const Touching& at = touching_[inside_[i]];
       Point& p = point(i);
       const float q = pressure_.q[i];
       p.sunk = pressure_.r[i] + at.depth;
       p.loaded = q > 0;
+      p.sticks = false;
       if (!p.loaded) continue;
-      bool sticks = false;
       float slips = 1;
+      const Vec3<float> m = system_.direction(i), n = system_.normal(i);
       if constexpr (has_friction) {
-        const Mat3<float>& axes = system_.axes(i);
-        const float s = traction_.s[i], t = traction_.t[i];
-        const float held2 = s * s + t * t, limit2 = traction_.limit[i] * traction_.limit[i];
-        sticks = held2 < 0.9999f * limit2;
-        if (sticks) slips = held2 / limit2;
-        p.anchor = sticks ? Vec3<float>(traction_.as[i] * axes.col(1) + traction_.at[i] * axes.col(2))
-                          : Vec3<float>(traction_.us[i] * axes.col(1) + traction_.ut[i] * axes.col(2));
+        const float held2 = tangential<float>(p.load, m).squaredNorm(),
+                    limit2 = friction_.mu * q * (friction_.mu * q);
+        p.sticks = held2 < 0.9999f * limit2;
+        if (p.sticks) slips = held2 / limit2, sticking += q;
+        p.anchor =
+            tangential<float>(p.sticks && friction_.held[i] > 0 ? friction_.anchor[i] : friction_.u[i], m);
+        total += q;
       }
-      any_sticks |= sticks;
       // The tool feels minus the gradient of the energy: of the depth along the direction of pressing, and of
       // the regular part as far as the point slips; where it sticks the body goes with it.
-      const Vec3<float> m = system_.axes(i).col(0), n = system_.normal(i);
       const Vec3<float> felt = p.load + q * (n / n.dot(m) - m - slips * slope);
-      contacts_.push_back({at.point, sticks, at.x, -at.m.template cast<S>(), -scale * felt.template cast<S>(),
-                           scale * static_cast<S>(q) / tool.area(at.point), static_cast<S>(at.depth)});
+      contacts_.push_back({at.point, p.sticks, at.x, -at.m.template cast<S>(),
+                           -scale * felt.template cast<S>(), scale * static_cast<S>(q) / tool.area(at.point),
+                           static_cast<S>(at.depth)});
     }
-    slides_ = has_friction && !contacts_.empty() && !any_sticks;
-    if (!slides_)
-      strength_ = {};
-    else if constexpr (has_friction)
-      fade();
+    if constexpr (has_friction) remember_strength(total, sticking);
   }
 
   std::vector<Point> points_;
@@ -380,7 +342,7 @@ class ResolvedState {
   PointSystem system_;
   Unloaded unloaded_;
   PressureLists pressure_;
-  PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<has_friction, TractionLists, Absent<4>> traction_;
+  PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<has_friction, FrictionLists, Absent<4>> friction_;
   PALPATE_NO_UNIQUE_ADDRESS RegularPart regular_;
   Residual residual_;
   Pose<S> pose_;
