@@ -48,15 +48,17 @@ void each_row(const std::string& path, const Row& row) {
   }
 }
 
-/// Of all tools together, by step.
-std::vector<Load> loads(const std::string& path) {
+/// Of all tools together, by step; torques about the first tool's origin.
+std::vector<Load> loads(const std::string& path, const ContactCase& c) {
   std::vector<Load> out;
-  each_row(path, [&out](std::istream& words) {
+  each_row(path, [&](std::istream& words) {
     std::size_t step = 0, tool = 0;
     Load l;
     words >> step >> tool >> l.force.x() >> l.force.y() >> l.force.z() >> l.torque.x() >> l.torque.y() >>
         l.torque.z() >> l.area;
     if (step > out.size()) out.emplace_back();
+    const auto& poses = c.poses.at(step);
+    l.torque += (poses.at(tool - 1).origin - poses.front().origin).cross(l.force);
     out[step - 1].force += l.force;
     out[step - 1].torque += l.torque;
     out[step - 1].area += l.area;
@@ -190,7 +192,7 @@ void judge(const std::string& name, const ContactCase& c, const Object& object, 
 
 void judge(const std::string& folder) {
   const ContactCase c = CaseFile::read(folder + "/case.txt");
-  const std::vector<Load> truth = loads(folder + "/load.csv");
+  const std::vector<Load> truth = loads(folder + "/load.csv", c);
   if (truth.empty()) throw std::runtime_error("no step was reached");
   const Shapes moved = shapes(folder + "/shape.csv");
   const std::string name = folder.substr(folder.find_last_of('/') + 1);
