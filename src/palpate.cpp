@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 
-/// @file Set-up and tick of response fields, compiled once for programs with PALPATE_COMPILED (config.hpp).
+/// @file Set-up and tick of response fields, samples of tools, compiled once for programs with PALPATE_COMPILED (config.hpp).
 
 #ifndef PALPATE_COMPILED
 #error "compile this file with PALPATE_COMPILED defined, as every file of the program"
 #endif
 
 #define PALPATE_TICK_INSTANCE template
+#include <palpate/resolved/setup/contact_samples_impl.hpp>
 #include <palpate/response/setup/load_mesh_impl.hpp>
 #include <palpate/response/setup/mid_edge_table_impl.hpp>
 #include <palpate/response/setup/patch_table_impl.hpp>

@@ -4,9 +4,15 @@
 /// @file Points of a rigid tool at which contact is resolved: even, one per cell, drawn in from sharp edges.
 /// Set-up only.
 
-#include <palpate/resolved/setup/centroidal_cells.hpp>
+#include <palpate/detection/resample.hpp>
+#include <palpate/geometry/triangle_mesh.hpp>
 
 namespace palpate {
+
+namespace detail {
+[[nodiscard]] SurfaceSamples<double> even_samples(const TriangleMesh<double>& mesh, double spacing,
+                                                  double crease);
+}  // namespace detail
 
 /// Points on the tool's surface, evenly spread over each of its smooth parts, for `ContactPoints`. A cell has
 /// the area spacing^2 in the mean; along sharp edges, where triangles meet at more than `crease` [rad], it
@@ -17,14 +23,19 @@ template <Real S>
 [[nodiscard]] inline SurfaceSamples<S> contact_samples(const TriangleMesh<S>& mesh, S spacing,
                                                        double crease = 0.7) {
   require_positive(spacing, "contact_samples", "spacing [m] must be > 0");
-  if (!(static_cast<double>(mesh.area() / spacing / spacing) <= 2.0 * detail::max_contact_samples))
-    fail("contact_samples", "spacing [m] asks for more than 20,000 points", static_cast<double>(spacing));
-  const TriangleMesh<double> wide(mesh_cast<double>(mesh.data()));
-  const auto h = static_cast<double>(spacing);
+  const SurfaceSamples<double> even = detail::even_samples(
+      TriangleMesh<double>(mesh_cast<double>(mesh.data())), static_cast<double>(spacing), crease);
   SurfaceSamples<S> out;
-  detail::ToolParts tool(wide, h, crease);
-  for (detail::CentroidalCells& part : tool.parts()) part.divide(h * h, out);
+  for (std::size_t i = 0; i < even.points.size(); ++i) {
+    out.points.push_back(even.points[i].cast<S>());
+    out.areas.push_back(static_cast<S>(even.areas[i]));
+    out.vector_areas.push_back(even.vector_areas[i].cast<S>());
+  }
   return out;
 }
 
 }  // namespace palpate
+
+#ifndef PALPATE_COMPILED
+#include <palpate/resolved/setup/contact_samples_impl.hpp>
+#endif

@@ -130,7 +130,7 @@ class ResolvedState {
   using RegularPart = typename RegularPartOf<Compliance>::type;
   /// Points whose gap was less than this share of the depth are solved for at once.
   static constexpr float near = 0.05f;
-  /// Of predicted(): a tick that moves further than this many times the last one begins from rest.
+  /// Bounds predicted(): a tick may change this many times what the last one did, or undo it.
   static constexpr float most_predicted = 3;
 
   using Point = PointMemory;

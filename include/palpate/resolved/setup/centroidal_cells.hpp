@@ -6,6 +6,7 @@
 #include <palpate/core/error.hpp>
 #include <palpate/detection/detail/point_grid.hpp>
 #include <palpate/detection/detail/thinned.hpp>
+#include <palpate/detection/resample.hpp>
 #include <palpate/geometry/detail/crease_normals.hpp>
 #include <palpate/geometry/triangle_mesh.hpp>
 
@@ -33,8 +34,7 @@ class CentroidalCells {
   std::vector<Sample> samples;
 
   /// Cells of the area of `cell2` [m^2] in the mean; adds their middles to `out`.
-  template <Real S>
-  void divide(double cell2, SurfaceSamples<S>& out) {
+  void divide(double cell2, SurfaceSamples<double>& out) {
     double area = 0;
     for (const Sample& s : samples) area += s.area;
     const auto count = static_cast<std::size_t>((std::max)(1.0, std::round(area / cell2)));
@@ -50,9 +50,9 @@ class CentroidalCells {
     assign();
     for (std::size_t k = 0; k < cells_.size(); ++k) {
       if (!(cells_[k].area > 0)) continue;  // squeezed out, as on a narrow tip
-      out.points.push_back(cells_[k].x.template cast<S>());
-      out.areas.push_back(static_cast<S>(cells_[k].area));
-      out.vector_areas.push_back((cells_[k].area * cells_[k].n).template cast<S>());
+      out.points.push_back(cells_[k].x);
+      out.areas.push_back(cells_[k].area);
+      out.vector_areas.push_back(cells_[k].area * cells_[k].n);
     }
   }
 
