@@ -84,7 +84,6 @@ endif()
 # and the field alone against the compiled set-up.
 add_executable(palpate_test_odr odr/first.cpp odr/second.cpp)
 target_link_libraries(palpate_test_odr PRIVATE Threads::Threads)
-target_compile_options(palpate_test_odr PRIVATE -O0)  # linked is what it is to be
 add_executable(palpate_test_odr_compiled odr/first_field.cpp odr/second_field.cpp)
 target_link_libraries(palpate_test_odr_compiled PRIVATE palpate::compiled_response)
 foreach(program odr odr_compiled)
