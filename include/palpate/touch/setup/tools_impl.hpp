@@ -16,7 +16,7 @@ namespace palpate {
 
 namespace detail {
 
-inline constexpr double points_on_contact_area = 40;  // chosen: within 1 % (docs/resolved.md), 50 us
+inline constexpr double points_on_contact_area = 40;  // chosen: within 2 % (docs/resolved.md), 30 us
 inline constexpr double most_points = 1500;           // chosen: Touch takes 256 beneath the surface
 inline constexpr std::size_t tool_vertices = 1500;    // chosen: chords of a circle 0.2 % below it
 
