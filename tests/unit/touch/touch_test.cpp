@@ -206,15 +206,15 @@ TEST_CASE("touch, a cylinder's end pressed flat: the field's disc") {
 }
 
 TEST_CASE("touch, a capsule's end beside an edge: finite elements' ball, side force too") {
-  // A ball is what touches; 11 mm deep into the fixed part it is not.
+  // Of the capsule only the end touches: a ball.
   Touch touch(block(), capsule(0.01, 0.01, {.contact_area = 1e-4}));
   for (const auto& [depth, x, y] : test::truth_edge_ball_force) {
-    if (depth < 0.002) continue;  // 6 points and fewer
+    if (depth < 0.002) continue;  // 12 points and fewer
     touch.reset();
     const V felt = touch.tick(at(V(0.028, 0.065 - depth, 0)), 1e-3).wrench.force;
     MESSAGE("depth ", depth, ": ", felt.x(), " ", felt.y(), " N, finite elements ", -x, " ", -y);
     CHECK_RELATIVE(felt.y(), -y, 0.05);  // near an edge 200 vertices are few
-    CHECK_RELATIVE(felt.x(), -x, 0.3);
+    CHECK_RELATIVE(felt.x(), -x, 0.3);   // 1 to 5 % of the force; -6 to +20 % here, +7 to +24 with 600
   }
 }
 
@@ -239,7 +239,7 @@ TEST_CASE("touch, tools with faces: what is drawn rests on the tool, and is the 
     CHECK(touch.draw(out).vertices == n);
     CHECK(touch.draw(out).vertices == 0);  // up to date
     CHECK(heap.allocations() == 0);
-    CHECK_ABSOLUTE(p[3 * middle + 1], 0.048, 1e-4);  // 5 % of the depth
+    CHECK_ABSOLUTE(p[3 * middle + 1], 0.048, 1e-4);  // 5 % of the depth: some 40 points
     CHECK(p[3 * middle] > 0.0001f);                  // dragged along x it stuck
     touch.reset();
     CHECK(touch.draw(out).vertices == n);

@@ -26,7 +26,7 @@ class Unloaded {
   }
   /// After pad(): whether one is nearer to x than the root of `distance2`.
   [[nodiscard]] bool is_near(const Vec3<float>& x, float distance2) const noexcept {
-    const SimdVec3<V> here{V(x.x()), V(x.y()), V(x.z())};
+    const SimdVec3<V> here = each(x);
     V nearest(distance2);
     for (std::size_t i = 0; i < size_; i += V::size()) {
       const SimdVec3<V> r = x_.load(i) - here;

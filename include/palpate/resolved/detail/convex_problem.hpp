@@ -96,6 +96,9 @@ template <class Apply>
   }
 }
 
+/// A point slips from this share of its limit on, both squared: rounding of a load on its cone is below.
+inline constexpr float slips_from = 0.9999f;
+
 /// Lists of a solve with friction, sized at set-up. Vectors: loads P on the body, displacements u, where
 /// points that stick hold the surface, a, and what an iteration changes.
 struct FrictionLists {
@@ -138,8 +141,7 @@ template <class Apply, class Coefficient>
   if (lists.step == 0) lists.step = first_step;
   apply(lists.load, lists.u);
   for (;; ++result.iterations) {
-    const float mu = lists.mu = coefficient(reduce(total)), normal = lists.step,
-                across = lists.step / tangential;
+    const float mu = lists.mu, normal = lists.step, across = lists.step / tangential;
     V left(0.f), PP(0.f);
     total = V(0.f);
     for (std::size_t i = 0; i < n; i += V::size()) {
@@ -150,7 +152,8 @@ template <class Apply, class Coefficient>
       const SimdVec3<V> g = held * (from - dot(mi, from) * mi);
       // What violates the conditions: a point that slips may do so along its disc's rim.
       const V t2 = dot(t, t), out = (min)(dot(g, t), zero);
-      const SimdVec3<V> along = g - select(t2 < V(0.9999f) * limit * limit, zero, out / (max)(t2, tiny)) * t;
+      const SimdVec3<V> along =
+          g - select(t2 < V(slips_from) * limit * limit, zero, out / (max)(t2, tiny)) * t;
       const V wrong = select(q > zero, gap, (min)(gap, zero));
       left += wrong * wrong + select(limit > zero, dot(along, along), zero);
       // A step down, held within the cone.
@@ -171,6 +174,7 @@ template <class Apply, class Coefficient>
       lists.u.store(i, lists.u.load(i) + du);
       Pu += dot(dP, du);
     }
+    lists.mu = coefficient(reduce(total));
     const float moved = reduce(Pu);
     if (moved > 0) lists.step = reduce(PP) / moved;
   }

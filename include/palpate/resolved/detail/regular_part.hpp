@@ -99,12 +99,10 @@ class RegularPart {
   }
   /// w at point i, of what was gathered last.
   [[nodiscard]] Vec3<float> of(std::size_t i) const noexcept { return at(weights_[i]); }
-  /// Gradient along the surface of n.w, n the surface's own normal, w by load(i) at the points: by regression
-  /// over the pressures q. One gradient for all is continuous in the pose; the load mesh's own jumps from
-  /// triangle to triangle.
-  template <class Load>
-  [[nodiscard]] Vec3<float> slope(const PointSystem& system, const float* q, const Load& load) noexcept {
-    gather(load);
+  /// Gradient along the surface of n.w, n the surface's own normal, w of what was gathered last: by
+  /// regression over the pressures q. One gradient for all is continuous in the pose; the load mesh's own
+  /// jumps from triangle to triangle.
+  [[nodiscard]] Vec3<float> slope(const PointSystem& system, const float* q) noexcept {
     Vec3<float> mean_x = Vec3<float>::Zero(), m = Vec3<float>::Zero();
     float sum = 0, mean_w = 0;
     for (std::size_t i = 0; i < size_; ++i) {
@@ -208,6 +206,7 @@ class RegularPart {
     for (const Weight& w : weights) sum += Four(w.value) * Four(&u_[4 * w.node]);
     return {sum[0], sum[1], sum[2]};
   }
+
   std::vector<std::uint16_t> slot_of_;  // of a load mesh's node, or none
   std::vector<std::uint32_t> node_;     // of a slot
   std::vector<std::uint32_t> tick_of_;  // when a slot was in use last; 0: never

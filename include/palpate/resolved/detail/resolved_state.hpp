@@ -117,11 +117,12 @@ class ResolvedState {
       const Point& p = points_[touching_[c].point];
       if (p.loaded || p.sunk - touching_[c].depth < near * deepest) inside_.push_back(c);
     }
-    for (int round = 0; round < 4; ++round) {
+    for (int round = 0;; ++round) {
       build(force, tool);
       begin_loads(round == 0 ? predicted() : 1.f);
       solve_inside(force, friction, tolerance);
-      if (!take_in(force, tool, tolerance)) break;
+      if constexpr (RegularPart::active) regular_.gather([this](std::size_t i) { return load(i); });
+      if (round == most_rounds || !take_in(force, tool, tolerance)) break;
     }
     finish(force, tool);
   }
@@ -130,6 +131,8 @@ class ResolvedState {
   using RegularPart = typename RegularPartOf<Compliance>::type;
   /// Points whose gap was less than this share of the depth are solved for at once.
   static constexpr float near = 0.05f;
+  /// How often points may come in within a tick.
+  static constexpr int most_rounds = 3;
   /// Bounds predicted(): a tick may change this many times what the last one did, or undo it.
   static constexpr float most_predicted = 3;
 
@@ -231,7 +234,6 @@ class ResolvedState {
     const std::size_t n = size();
     std::size_t next = 0;
     bool more = false;
-    if constexpr (RegularPart::active) regular_.gather([this](std::size_t i) { return load(i); });
     for (std::uint32_t c = 0; c < touching_.size(); ++c) {
       if (next < n && inside_[next] == c) {
         ++next;
@@ -303,8 +305,7 @@ class ResolvedState {
     const S scale = per_load_ = static_cast<S>(4 * std::numbers::pi * force.shear_modulus());
     for (std::size_t i = 0; i < size(); ++i) point(i).go_on(load(i), displacement(i));
     Vec3<float> slope = Vec3<float>::Zero();
-    if constexpr (RegularPart::active)
-      slope = regular_.slope(system_, pressure_.q.data(), [this](std::size_t i) { return point(i).load; });
+    if constexpr (RegularPart::active) slope = regular_.slope(system_, pressure_.q.data());
     float total = 0, sticking = 0;
     for (std::size_t i = 0; i < size(); ++i) {
       const Touching& at = touching_[inside_[i]];
@@ -319,7 +320,7 @@ class ResolvedState {
       if constexpr (has_friction) {
         const float held2 = tangential<float>(p.load, m).squaredNorm(),
                     limit2 = friction_.mu * q * (friction_.mu * q);
-        p.sticks = held2 < 0.9999f * limit2;
+        p.sticks = held2 < slips_from * limit2;
         if (p.sticks) slips = held2 / limit2, sticking += q;
         p.anchor =
             tangential<float>(p.sticks && friction_.held[i] > 0 ? friction_.anchor[i] : friction_.u[i], m);
