@@ -62,6 +62,32 @@ TEST_CASE_TEMPLATE("box: rays along faces and edges", S, float, double) {
   CHECK(!body.raycast(Vec3<S>(5, 0, 0), Vec3<S>::Zero()).hit);
 }
 
+TEST_CASE_TEMPLATE("box: a ball over an edge is as far as the edge", S, float, double) {
+  const Box<S> body({.half = {S(3), S(2), S(1)}});
+  CHECK(body.separated(Vec3<S>(0, 5, -5), S(4.99)));  // 3 and 4 beyond the edge
+  CHECK(!body.separated(Vec3<S>(0, 5, -5), S(5.01)));
+}
+
+TEST_CASE_TEMPLATE("box: many points at once are as one by one, next to faces, edges and corners", S, float,
+                   double) {
+  const Box<S> body({.half = {S(3), S(2), S(1)}, .centre = {S(1), S(-2), S(3)}});
+  PointBatch<S> x;
+  for (std::size_t round = 0; round < 8; ++round) {
+    for (std::size_t i = 0; i < batch_size; ++i) {  // from 0.3 of the way to beyond the face, axis by axis
+      const auto part = [&](std::size_t step) { return S(0.3) + S(0.1) * static_cast<S>(step % 8); };
+      x.x[i] = S(1) + S(3) * part(i), x.y[i] = S(-2) - S(2) * part(i + i / 4),
+      x.z[i] = S(3) + part(i + round);
+    }
+    PenetrationBatch<S> in;
+    body.penetration(x, in);
+    for (std::size_t i = 0; i < batch_size; ++i) {
+      const Penetration<S> one = body.penetration(Vec3<S>(x.x[i], x.y[i], x.z[i]));
+      CHECK_ABSOLUTE(in.depth[i], one.depth, test::ulps<S>(16));  // of lengths up to 1 m
+      CHECK_ABSOLUTE(in.gradient_z[i], one.gradient.z(), test::ulps<S>(64));
+    }
+  }
+}
+
 TEST_CASE("box: meshes of needles and plates stay within the count; corners are vertices") {
   for (const Vec3<double>& h :
        {Vec3<double>(1, 0.001, 0.001), Vec3<double>(1, 1, 0.001), Vec3<double>(0.02, 0.02, 0.02)}) {

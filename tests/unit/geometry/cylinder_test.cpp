@@ -48,6 +48,23 @@ TEST_CASE_TEMPLATE("cylinder: rays through caps, side and along the axis", S, fl
   CHECK(body.raycast(Vec3<S>::Zero(), Vec3<S>(0, 0, 1)).position == Vec3<S>(0, 0, 2));
 }
 
+TEST_CASE_TEMPLATE("cylinder: a ball over the rim is as far as the rim", S, float, double) {
+  const Cylinder<S> body({.radius = S(2), .half_height = S(1)});
+  CHECK(body.separated(Vec3<S>(0, 5, -5), S(4.99)));  // 3 and 4 beyond the rim
+  CHECK(!body.separated(Vec3<S>(0, 5, -5), S(5.01)));
+}
+
+TEST_CASE_TEMPLATE("cylinder: a ray beside the axis meets the side where Pythagoras has it", S, float,
+                   double) {
+  const Cylinder<S> body({.radius = S(5), .half_height = S(1)});
+  const RayHit<S> in = body.raycast(Vec3<S>(-10, 0, 3), Vec3<S>(1, 0, 0)),
+                  out = body.raycast(Vec3<S>(0, 0, 3), Vec3<S>(1, 0, 0));
+  CHECK_ABSOLUTE(in.t, 6.0L, test::ulps<S>(8) * 10);
+  CHECK_ABSOLUTE((in.position - Vec3<S>(-4, 0, 3)).norm(), 0, test::ulps<S>(8) * 10);
+  CHECK_ABSOLUTE(out.t, 4.0L, test::ulps<S>(8) * 10);
+  CHECK(!body.raycast(Vec3<S>(-10, 0, S(5.001)), Vec3<S>(1, 0, 0)).hit);
+}
+
 TEST_CASE("cylinder: bad parameters are refused by name and value") {
   std::string message;
   try {

@@ -159,6 +159,37 @@ TEST_CASE_TEMPLATE("ellipsoid: equal axes agree with the sphere", S, float, doub
   CHECK_RELATIVE(body.curvature(sphere.point(S(0.1), S(0.3))).k2, 1 / 0.03L, test::ulps<S>(32));
 }
 
+TEST_CASE_TEMPLATE("ellipsoid: a ray beside the centre meets it where Pythagoras has it", S, float, double) {
+  const Ellipsoid<S> body({.axes = {S(5), S(7), S(5)}});
+  const RayHit<S> in = body.raycast(Vec3<S>(-10, 0, 3), Vec3<S>(1, 0, 0)),
+                  out = body.raycast(Vec3<S>(0, 0, 3), Vec3<S>(1, 0, 0));
+  CHECK_ABSOLUTE(in.t, 6.0L, test::ulps<S>(8) * 10);
+  CHECK_ABSOLUTE((in.position - Vec3<S>(-4, 0, 3)).norm(), 0, test::ulps<S>(8) * 10);
+  CHECK_ABSOLUTE(out.t, 4.0L, test::ulps<S>(8) * 10);
+  CHECK(!body.raycast(Vec3<S>(-10, 0, S(5.001)), Vec3<S>(1, 0, 0)).hit);
+}
+
+TEST_CASE_TEMPLATE("exact surfaces: elsewhere it is the same body", S, float, double) {
+  const Vec3<S> m(S(4), S(-8), S(2)), axes(S(3), S(1), S(2));
+  const Ellipsoid<S> here({.axes = axes}), there({.axes = axes, .centre = m});
+  const Vec3<S> p = here.point(S(0.1), S(0.3));
+  const long double moved = test::ulps<S>(64);  // p + m is rounded to an ulp of 8, the least axis is 1
+  CHECK_ABSOLUTE((there.normal(p + m) - here.normal(p)).norm(), 0, moved);
+  CHECK_ABSOLUTE((there.closest(S(2) * p + m).position - m - here.closest(S(2) * p).position).norm(), 0,
+                 moved);
+  CHECK_ABSOLUTE(there.curvature(p + m).k1, here.curvature(p).k1, 8 * moved);  // at most 9 in 1/m
+  CHECK_ABSOLUTE(there.raycast(m, p).t, 1, moved);
+}
+
+TEST_CASE_TEMPLATE("exact surfaces: sizes of 1e-6 and of 1e6 m are still taken", S, float, double) {
+  for (const S size : {S(1e-6L), S(1e6L)}) {
+    CHECK(Sphere<S>({.radius = size}).params().radius == size);
+    CHECK(Ellipsoid<S>({.axes = Vec3<S>::Constant(size)}).reach() > S(0));
+  }
+  CHECK_THROWS_AS(Sphere<S>({.radius = S(0.99e-6L)}), SetupError);
+  CHECK_THROWS_AS(Sphere<S>({.radius = S(1.01e6L)}), SetupError);
+}
+
 TEST_CASE_TEMPLATE("ellipsoid: curvatures at the ends of the axes, ratio 1 : 1000", S, float, double) {
   const long double a = 1, b = 0.03L, c = 0.001L;
   const Ellipsoid<S> body({.axes = {S(a), S(b), S(c)}});

@@ -76,8 +76,8 @@ TEST_CASE(
         CHECK(points.size() == 6);
         const double worst = farthest(ends, points);
         MESSAGE(n, " vertices, noise ", noise, ", turned ", turned, ": farthest ", worst, " m, rho ", rho);
-        // Without noise to an edge, with it to the radius of the average.
-        CHECK(worst < (noise > 0 ? rho : 1.2 * detail::mean_edge(mesh.area(), mesh.triangles().size())));
+        // Without noise to an edge, with it to half of the radius of the average: measured 0.4 at most.
+        CHECK(worst < (noise > 0 ? rho / 2 : 1.2 * detail::mean_edge(mesh.area(), mesh.triangles().size())));
         for (const auto& p : points) {
           CHECK_ABSOLUTE(p.normal.norm(), 1, test::ulps<double>(8));
           // A vertex moved by 0.1 edges tilts the triangles around it by up to about 0.3 rad.

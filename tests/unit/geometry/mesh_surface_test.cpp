@@ -8,6 +8,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <array>
 #include <limits>
 #include <string>
 
@@ -176,6 +178,51 @@ TEST_CASE_TEMPLATE("mesh surface: touching from inside and outside, at faces, ed
       const S step = S(1e-3) * size;
       CHECK(body.closest(on + step * found.normal).distance > S(0));
       CHECK(body.penetration(on - step * found.normal).depth > S(0));
+    }
+  }
+}
+
+TEST_CASE_TEMPLATE("mesh surface: beside a needle's edges and tips is outside", S, float, double) {
+  // Its faces meet at sharp angles: beyond an edge one of its two faces alone has that point inside.
+  const MeshData<S> needle{.vertices = {{S(0), S(0), S(0)},
+                                        {S(0.01), S(0), S(0)},
+                                        {S(0), S(0.01), S(0)},
+                                        {S(0.003), S(0.003), S(0.1)}},
+                           .triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+  const MeshSurface<S> body{TriangleMesh<S>(needle)};
+  std::array<Vec3<S>, 4> n;
+  for (std::size_t t = 0; t < 4; ++t) {
+    const auto& [a, b, c] = needle.triangles[t];
+    n[t] =
+        (needle.vertices[b] - needle.vertices[a]).cross(needle.vertices[c] - needle.vertices[a]).normalized();
+  }
+  const S h = S(0.002);
+  const auto check = [&](const Vec3<S>& at, Vec3<S> away) {
+    away.normalize();
+    const SurfacePoint<S> found = body.closest(at + h * away);
+    CHECK_ABSOLUTE(found.distance, static_cast<long double>(h), test::ulps<S>(8) * 0.1L);  // x is rounded
+    CHECK_ABSOLUTE((found.position - at).norm(), 0, test::ulps<S>(64) * 0.1L);
+    CHECK(!body.inside(at + h * away));
+  };
+  for (std::uint32_t v = 0; v < 4; ++v) {
+    for (std::size_t t = 0; t < 4; ++t) {
+      const auto& corners = needle.triangles[t];
+      if (std::find(corners.begin(), corners.end(), v) == corners.end()) continue;
+      Vec3<S> away = S(0.9) * n[t];  // and a little of the other two that meet at v
+      for (std::size_t other = 0; other < 4; ++other) {
+        const auto& its = needle.triangles[other];
+        if (other != t && std::find(its.begin(), its.end(), v) != its.end()) away += S(0.05) * n[other];
+      }
+      check(needle.vertices[v], away);
+      for (std::size_t other = 0; other < 4; ++other) {  // edges: the two corners both faces have
+        if (other == t) continue;
+        Vec3<S> middle = Vec3<S>::Zero();
+        for (const std::uint32_t c : corners) {
+          const auto& its = needle.triangles[other];
+          if (std::find(its.begin(), its.end(), c) != its.end()) middle += needle.vertices[c] / S(2);
+        }
+        check(middle, S(0.95) * n[t] + S(0.05) * n[other]);
+      }
     }
   }
 }

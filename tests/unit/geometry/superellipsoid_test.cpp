@@ -5,6 +5,7 @@
 #include <palpate/geometry/ellipsoid.hpp>
 #include <palpate/geometry/superellipsoid.hpp>
 
+#include <cmath>
 #include <random>
 #include <string>
 
@@ -118,6 +119,24 @@ TEST_CASE_TEMPLATE("superellipsoid: penetration of many points is that of each, 
                      test::ulps<S>(64) + 4 * rounding / static_cast<long double>(body.reach()));
     }
   }
+}
+
+TEST_CASE_TEMPLATE("superellipsoid: the centre has a unit normal and no curvature", S, float, double) {
+  const Superellipsoid<S> body({.axes = {S(3), S(2), S(2)}, .e1 = S(0.5), .e2 = S(0.4)});
+  CHECK_ABSOLUTE(body.normal(Vec3<S>::Zero()).norm(), 1, test::ulps<S>(4));
+  CHECK(body.curvature(Vec3<S>::Zero()).k1 == S(0));
+  CHECK(body.curvature(Vec3<S>::Zero()).k2 == S(0));
+}
+
+TEST_CASE_TEMPLATE("superellipsoid: a ball over the flat is as far as the flat", S, float, double) {
+  const Vec3<S> m(S(1), S(-2), S(3));
+  const Superellipsoid<S> body({.axes = Vec3<S>::Constant(S(2)), .e1 = S(0.5), .e2 = S(0.5), .centre = m});
+  CHECK(body.separated(Vec3<S>(S(3.1), 0, 0) + m, S(1)));
+  CHECK(!body.separated(Vec3<S>(S(2.9), 0, 0) + m, S(1)));
+  // Over the corner, at (2, 2, 2) / 3^(1/4): N = 3 at (2, 2, 2) 3^(3/4), 1 + r / a = 2.99 and 3.01.
+  const Vec3<S> far = Vec3<S>::Constant(S(2 * std::pow(3.0, 0.75))) + m;
+  CHECK(body.separated(far, S(3.98)));
+  CHECK(!body.separated(far, S(4.02)));
 }
 
 TEST_CASE("superellipsoid: bad exponents and ratios are refused by name and value") {
