@@ -5,21 +5,21 @@
 ///
 ///     resolved_cases CASE_DIR...      e.g. bench/truth/data/contact/*
 ///
-/// CASE_DIR holds case.txt and load.csv. Bodies: ellipsoids and boxes; several tools as far as they keep
-/// their places to each other. Prints each step: loads, displacements at 300 places; and the root mean
-/// square of the force's error as a vector.
+/// CASE_DIR holds case.txt and load.csv. Several tools are solved in turn, each under the loads of the others.
+/// Prints each step: loads of all tools, displacements at 300 places; and the root mean square of the force's
+/// error as a vector.
 
 #include "truth/case_file.hpp"
 
 #include <palpate/geometry/box.hpp>
 #include <palpate/geometry/ellipsoid.hpp>
+#include <palpate/geometry/shared_surface.hpp>
 #include <palpate/law/friction/coulomb.hpp>
 #include <palpate/resolved/contact_samples.hpp>
 #include <palpate/resolved/response_compliance.hpp>
 #include <palpate/resolved/response_load_deformation.hpp>
 #include <palpate/solver/contact_solver.hpp>
-
-#include <support/joined.hpp>
+#include <palpate/touch/elastic_body.hpp>
 
 #include <cstdio>
 #include <memory>
@@ -103,33 +103,125 @@ palpate::MeshData<double> mesh_of(const RigidTool& tool) {
   return mesh;
 }
 
+/// A body of circles around an axis, as rings of vertices [m].
+palpate::MeshData<double> mesh_of(const Body& body) {
+  constexpr int along = 48, end = 12;
+  constexpr std::uint32_t around = 64;
+  struct Ring {
+    V centre, axis;
+    double radius;
+  };
+  std::vector<Ring> rings;
+  if (body.kind == Body::bean) {
+    const auto middle = [&body](double angle) {
+      return V(body.size.x() * std::sin(angle), body.size.x() * (1 - std::cos(angle)), 0);
+    };
+    const auto cap = [&](int side) {
+      const V axis(std::cos(body.bend), side * std::sin(body.bend), 0);
+      for (int i = side < 0 ? 0 : 1; i <= (side < 0 ? end - 1 : end); ++i) {
+        const double angle = std::acos(0.) * (side < 0 ? i - end : i) / end;  // from the end's circle on
+        rings.push_back({middle(side * body.bend) + body.size.y() * std::sin(angle) * axis, axis,
+                         body.size.y() * std::cos(angle)});
+      }
+    };
+    cap(-1);
+    for (int i = -along; i <= along; i += 2) {
+      const double angle = body.bend * i / along;
+      rings.push_back({middle(angle), V(std::cos(angle), std::sin(angle), 0), body.size.y()});
+    }
+    cap(1);
+  } else {
+    const bool lies = body.kind == Body::rod;
+    const V axis = lies ? V::UnitZ() : V::UnitY();
+    const double low = lies ? -body.size.z() : 0, high = lies ? body.size.z() : body.size.y();
+    for (int i = 0; i <= end; ++i) rings.push_back({low * axis, axis, body.size.x() * i / end});
+    for (int i = 1; i < along; ++i)
+      rings.push_back({(low + (high - low) * i / along) * axis, axis, body.size.x()});
+    for (int i = end; i >= 0; --i) rings.push_back({high * axis, axis, body.size.x() * i / end});
+  }
+  palpate::MeshData<double> mesh;
+  mesh.vertices.push_back(mm * rings.front().centre);
+  for (std::size_t r = 1; r + 1 < rings.size(); ++r) {
+    const V across = rings[r].axis.z() > 0.5 ? V::UnitX() : V::UnitZ();
+    const V third = rings[r].axis.cross(across);
+    for (std::uint32_t k = 0; k < around; ++k) {
+      const double angle = 4 * std::acos(0.) * k / around;
+      mesh.vertices.push_back(
+          mm * (rings[r].centre + rings[r].radius * (std::cos(angle) * across + std::sin(angle) * third)));
+    }
+  }
+  const auto last = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.push_back(mm * rings.back().centre);
+  for (std::uint32_t k = 0; k < around; ++k) {
+    const std::uint32_t next = (k + 1) % around;
+    mesh.triangles.push_back({0, 1 + next, 1 + k});
+    mesh.triangles.push_back({last, last - around + k, last - around + next});
+    for (std::uint32_t r = 1; r + around < last; r += around) {
+      mesh.triangles.push_back({r + k, r + next, r + around + k});
+      mesh.triangles.push_back({r + next, r + around + next, r + around + k});
+    }
+  }
+  return mesh;
+}
+
+palpate::ToolPoints<double> points_of(const RigidTool& tool) {
+  const bool is_round = tool.kind == RigidTool::ball || tool.kind == RigidTool::ellipsoid;
+  const double spacing =
+      mm * (is_round ? 0.12 : 0.2) * (tool.kind == RigidTool::box ? tool.size.minCoeff() : tool.size.x());
+  return {palpate::contact_samples(palpate::TriangleMesh<double>(mesh_of(tool)), spacing),
+          {.contact_area = spacing * spacing}};
+}
+
 template <class Object, class Friction>
 void judge(const std::string& name, const ContactCase& c, const Object& object,
-           const std::shared_ptr<const palpate::ResponseField>& field,
-           const palpate::ToolPoints<double>& tool, const Friction& friction, const std::vector<Load>& truth,
-           const Shapes& shapes) {
+           const std::shared_ptr<const palpate::ResponseField>& field, const Friction& friction,
+           const std::vector<Load>& truth, const Shapes& shapes) {
   using Elastic = palpate::ElasticContact<double, palpate::ResponseCompliance>;
-  using Shape = palpate::ResponseLoadDeformation<double, 512>;
-  palpate::ContactSolver<Object, Elastic, Friction, palpate::ContactPoints<512>, Shape> solver(
-      {.object = object,
-       .tool = tool,
-       .force = Elastic({.compliance = palpate::ResponseCompliance(field)}),
-       .friction = friction,
-       .deformation = Shape(field, shapes.at, false)});
+  using Solver = palpate::ContactSolver<Object, Elastic, Friction, palpate::ContactPoints<512, 512>>;
+  using Loads = palpate::FixedVector<palpate::SurfaceLoad<double>, 512>;
+  std::vector<Solver> tools;
+  for (const RigidTool& tool : c.tools)
+    tools.push_back(Solver({.object = object,
+                            .tool = points_of(tool),
+                            .force = Elastic({.compliance = palpate::ResponseCompliance(field)}),
+                            .friction = friction}));
+  palpate::ResponseLoadDeformation<double, 512> shape(field, shapes.at, false);
   std::vector<V> deformed(shapes.at.vertices.size());
   const palpate::VertexBuffer<double> buffer{.positions = deformed.front().data()};
-  palpate::FixedVector<palpate::SurfaceLoad<double>, 512> loads;
+  const auto loads_without = [&tools](std::size_t left_out) {
+    Loads all;
+    for (std::size_t t = 0; t < tools.size(); ++t) {
+      Loads loads;
+      if (t != left_out) tools[t].state().loads(loads);
+      for (const auto& load : loads)
+        if (!all.full()) all.push_back(load);
+    }
+    return all;
+  };
   double sum = 0;
   std::size_t steps = 0;
   for (std::size_t k = 1; k < c.poses.size() && k <= truth.size(); ++k) {
-    palpate::TickResult<double> result{};
-    for (int i = 1; i <= 100; ++i) {
-      const Pose p = between(c.poses[k - 1][0], c.poses[k][0], i / 100.);
-      result = solver.tick({p.rotation.toRotationMatrix(), mm * p.origin});
+    V force = V::Zero(), torque = V::Zero();
+    double area = 0;
+    std::size_t points = 0;
+    const int rest = tools.size() > 1 ? 5 : 0;  // rounds in which the tools come to agree
+    for (int i = 1; i <= 100 + rest; ++i) {
+      force = torque = V::Zero();
+      area = 0, points = 0;
+      for (std::size_t t = 0; t < tools.size(); ++t) {
+        const Pose p = between(c.poses[k - 1][t], c.poses[k][t], (std::min)(i, 100) / 100.);
+        const Loads beside = loads_without(t);
+        tools[t].set_beside({beside.begin(), beside.size()});
+        const auto felt = tools[t].tick({p.rotation.toRotationMatrix(), mm * p.origin}, 1e-3);
+        force -= felt.wrench.force;
+        torque -=
+            felt.wrench.torque / mm +
+            (p.origin - c.poses[k][0].origin).cross(felt.wrench.force);  // about the first tool's origin
+        if (!tools[t].contacts().empty()) area += tools[t].contacts()[0].area / (mm * mm);
+        points += tools[t].state().points().size();
+      }
     }
-    const double area = solver.contacts().empty() ? 0 : solver.contacts()[0].area / (mm * mm);
     const Load& t = truth[k - 1];
-    const V force = -result.wrench.force, torque = -result.wrench.torque / mm;
     const double error = (force - t.force).norm() / t.force.norm();
     sum += error * error;
     ++steps;
@@ -137,9 +229,9 @@ void judge(const std::string& name, const ContactCase& c, const Object& object,
                 force.x(), force.y(), force.z(), t.force.x(), t.force.y(), t.force.z(), 100 * error);
     std::printf("T %.1f %.1f %.1f N mm, reference %.1f %.1f %.1f; area %+.0f %%; %zu points\n", torque.x(),
                 torque.y(), torque.z(), t.torque.x(), t.torque.y(), t.torque.z(), 100 * (area / t.area - 1),
-                solver.state().points().size());
-    solver.state().loads(loads);
-    (void)solver.draw({loads.begin(), loads.size()}, buffer);
+                points);
+    const Loads all = loads_without(tools.size());
+    (void)shape.write({all.begin(), all.size()}, buffer);
     double off = 0, area_of_all = 0, largest = 0, deepest = 0, there = 0;
     for (std::size_t v = 0; v < deformed.size(); ++v) {
       const V u = shapes.u[v][k - 1];
@@ -158,36 +250,15 @@ void judge(const std::string& name, const ContactCase& c, const Object& object,
 }
 
 template <class Object>
-void judge(const std::string& name, const ContactCase& c, const Object& object, std::vector<Load> truth,
+void judge(const std::string& name, const ContactCase& c, const Object& object,
+           const std::shared_ptr<const palpate::ResponseField>& field, const std::vector<Load>& truth,
            const Shapes& shapes) {
-  // All tools as one, in the frame of the first, as long as they keep their places.
-  std::size_t together = c.poses.size();
-  palpate::MeshData<double> all;
-  for (std::size_t k = 0; k < c.tools.size(); ++k) {
-    const V offset = mm * (c.poses[0][k].origin - c.poses[0][0].origin);
-    for (std::size_t i = 0; i < together; ++i)
-      if ((c.poses[i][k].origin - c.poses[i][0].origin - offset / mm).norm() > 1e-9) together = i;
-    palpate::test::append(all, mesh_of(c.tools[k]), offset);
-  }
-  truth.resize((std::min)(truth.size(), together - 1));
-  const RigidTool& t = c.tools[0];
-  const bool is_round = t.kind == RigidTool::ball || t.kind == RigidTool::ellipsoid;
-  const double spacing =
-      mm * (is_round ? 0.12 : 0.2) * (t.kind == RigidTool::box ? t.size.minCoeff() : t.size.x());
-  const palpate::ToolPoints<double> tool(
-      palpate::contact_samples(palpate::TriangleMesh<double>(all), spacing),
-      {.contact_area = spacing * spacing});
-  const bool stands = c.body.stands();
-  const double fixed = mm * c.body.fixed_height;
-  const auto field = std::make_shared<const palpate::ResponseField>(
-      object.mesh(5000), [=](const V& x) { return stands ? x.y() <= 1e-6 : x.y() <= fixed; },
-      palpate::ResponseField::Params{.E = 1e6 * c.E, .nu = c.nu, .mesh = {.vertices = 600}});
   if (c.friction > 0)
-    judge(name, c, object, field, tool,
+    judge(name, c, object, field,
           palpate::CoulombFriction<double>({.mu_static = c.friction, .mu_dynamic = c.friction}), truth,
           shapes);
   else
-    judge(name, c, object, field, tool, palpate::Frictionless<double>{}, truth, shapes);
+    judge(name, c, object, field, palpate::Frictionless<double>{}, truth, shapes);
 }
 
 void judge(const std::string& folder) {
@@ -196,14 +267,24 @@ void judge(const std::string& folder) {
   if (truth.empty()) throw std::runtime_error("no step was reached");
   const Shapes moved = shapes(folder + "/shape.csv");
   const std::string name = folder.substr(folder.find_last_of('/') + 1);
-  if (c.body.kind == Body::ellipsoid)
-    judge(name, c, palpate::Ellipsoid<double>({.axes = mm * c.body.size}), truth, moved);
-  else if (c.body.kind == Body::box)
-    judge(name, c,
-          palpate::Box<double>({.half = mm / 2 * c.body.size, .centre = V(0, mm / 2 * c.body.size.y(), 0)}),
-          truth, moved);
-  else
-    throw std::runtime_error("of bodies ellipsoids and boxes are covered");
+  const double fixed = c.body.stands() ? 1e-9 : mm * c.body.fixed_height;
+  const auto field_of = [&](const palpate::MeshData<double>& mesh) {
+    return std::make_shared<const palpate::ResponseField>(
+        mesh, palpate::below(fixed),
+        palpate::ResponseField::Params{.E = 1e6 * c.E, .nu = c.nu, .mesh = {.vertices = 600}});
+  };
+  if (c.body.kind == Body::ellipsoid) {
+    const palpate::Ellipsoid<double> body({.axes = mm * c.body.size});
+    judge(name, c, body, field_of(body.mesh(5000)), truth, moved);
+  } else if (c.body.kind == Body::box) {
+    const palpate::Box<double> body(
+        {.half = mm / 2 * c.body.size, .centre = V(0, mm / 2 * c.body.size.y(), 0)});
+    judge(name, c, body, field_of(body.mesh(5000)), truth, moved);
+  } else {
+    const palpate::ElasticBody body(
+        mesh_of(c.body), {.E = 1e6 * c.E, .nu = c.nu, .fixed = palpate::below(fixed), .vertices = 600});
+    judge(name, c, palpate::SharedSurface(body.surface()), body.field(), truth, moved);
+  }
 }
 
 }  // namespace

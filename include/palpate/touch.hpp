@@ -76,6 +76,21 @@ class Touch {
     return result;
   }
 
+  /// What the tool pushes the body with after the last tick, for other tools on it.
+  [[nodiscard]] std::span<const SurfaceLoad<double>> loads() const noexcept
+    requires(is_resolved)
+  {
+    return {loads_.begin(), loads_.size()};
+  }
+  /// For several tools on one body: loads() of the others, for the next tick, until which they stay where
+  /// they are. The body gives way to them, too, and is drawn under all.
+  void set_beside(std::span<const SurfaceLoad<double>> loads) noexcept
+    requires(is_resolved)
+  {
+    beside_ = loads;
+    solver_.set_beside(loads);
+  }
+
   /// The deformed body of the newest tick, in object coordinates: a vertex of `buffer` for each vertex of
   /// `body().mesh()`. Returns what was written: nothing where the last call's buffer is up to date.
   template <Real T>
@@ -132,10 +147,15 @@ class Touch {
 
   void hand_over() noexcept {
     Drawn& drawn = handed_over_.back();
+    drawn.clear();
     if constexpr (is_resolved) {
-      solver_.state().loads(drawn);
+      solver_.state().loads(loads_);
+      for (const SurfaceLoad<double>& load : loads_) drawn.push_back(load);
+      for (const SurfaceLoad<double>& load : beside_) {
+        if (!drawn.full()) drawn.push_back(load);
+      }
+      beside_ = {};
     } else {
-      drawn.clear();
       for (const ContactState<double>& contact : solver_.contacts()) drawn.push_back(contact);
     }
     handed_over_.publish();
@@ -145,6 +165,9 @@ class Touch {
   Tool tool_;
   PALPATE_NO_UNIQUE_ADDRESS decltype(Parts::fit) fit_;
   Solver solver_;
+  PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<is_resolved, Drawn, Absent<1>> loads_;
+  using Loads = std::span<const SurfaceLoad<double>>;
+  PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<is_resolved, Loads, Absent<2>> beside_;
   TripleBuffer<Drawn> handed_over_;
   const void* drawn_ = nullptr;  // the last draw's buffer
 };

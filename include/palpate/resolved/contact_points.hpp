@@ -13,24 +13,27 @@ namespace palpate {
 
 /// Up to N points beneath the surface, of which half carry load when a ball is pressed; the tool is made of
 /// `contact_samples`. Several contacts, edges, tilt and rolling need no rule of their own. With more than N
-/// the surplus is left out (`Status::point_overflow`): the tool then is too fine.
-template <std::size_t N>
+/// the surplus is left out (`Status::point_overflow`): the tool then is too fine. `Beside`: as many loads of
+/// other tools on the same body are felt, those that `evaluate()` is given.
+template <std::size_t N, std::size_t Beside = 0>
 struct ContactPoints {
   static_assert(N >= 1 && N <= 1024, "palpate::ContactPoints<N>: 1 <= N <= 1024");
+  static_assert(Beside <= 4096, "palpate::ContactPoints<N, Beside>: Beside <= 4096");
   static constexpr std::size_t max_regions = 1;
   static constexpr std::size_t max_points = N;
+  static constexpr std::size_t max_beside = Beside;
   using Sharing = AreaSharing;
   template <Real S>
   using Tool = ToolPoints<S>;
 };
 
 namespace detail {
-template <std::size_t N>
-inline constexpr bool is_shipped_topology<ContactPoints<N>> = true;
+template <std::size_t N, std::size_t Beside>
+inline constexpr bool is_shipped_topology<ContactPoints<N, Beside>> = true;
 }  // namespace detail
 
 template <class T>
-concept ResolvedTopology = Topology<T> && requires { T::max_points; };
+concept ResolvedTopology = Topology<T> && requires { T::max_points, T::max_beside; };
 
 /// What a point of the tool feels.
 template <Real S>

@@ -107,6 +107,8 @@ class ContactSolver {
     using State::TickMemory::loads;     ///< of a resolved contact, to a list: what a shape is drawn from
     using State::TickMemory::points;    ///< likewise: forces at the tool's points
     using State::TickMemory::residual;  ///< what its conditions lack after the last tick
+    /// `Contacts::max_beside` > 0: loads() of other tools on this body, for the next tick, kept until then.
+    using State::TickMemory::set_beside;
     /// Object or laws are others now: the next tick is worked out, though the pose is the last one's.
     void refresh() noexcept { this->last_.ticks = (std::min)(this->last_.ticks, 1); }
     /// Forgets all contact, as after a calibration of the device, and what laws with memory remember.
@@ -170,6 +172,7 @@ class ContactSolver {
   /// Before any contact. Takes heap where the topology clusters.
   [[nodiscard]] State initial_state() const { return State(collector_.initial_state()); }
   [[nodiscard]] const State& state() const noexcept { return state_; }
+  void set_beside(std::span<const SurfaceLoad<S>> loads) noexcept { state_.set_beside(loads); }
   /// The next tick goes on from `state`, one of this solver's.
   void restore(const State& state) noexcept { state_ = state; }
 
@@ -209,7 +212,6 @@ class ContactSolver {
     friction_ = friction;
     state_.refresh();
   }
-
   [[nodiscard]] const Object& object() const noexcept { return object_; }
   /// For objects that follow a deformation (geometry/deformed_surface.hpp): the next tick is worked out anew.
   [[nodiscard]] Object& mutable_object() noexcept {

@@ -62,8 +62,8 @@ template <>
 struct TouchParts<MeshTool> {
   using Object = SampledSurface<SharedSurface<MeshSurface<double>>>;
   using Force = ElasticContact<double, ResponseCompliance>;
-  using Contacts = ContactPoints<256>;
-  static constexpr std::size_t max_drawn = Contacts::max_points;
+  using Contacts = ContactPoints<256, 256>;
+  static constexpr std::size_t max_drawn = Contacts::max_points + Contacts::max_beside;
   using Shape = ResponseLoadDeformation<double, max_drawn>;
 
   TouchParts(const ElasticBody& body, const MeshTool& mesh);

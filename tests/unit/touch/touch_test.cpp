@@ -247,6 +247,45 @@ TEST_CASE("touch, tools with faces: what is drawn rests on the tool, and is the 
   }
 }
 
+TEST_CASE("touch, two tools on one body: it gives way to both, and is drawn on both") {
+  const std::size_t n = block().mesh().vertices().size();
+  const double d = 0.002, half = block().mesh().upper().x(), y = 0.025;
+  Pose<double> to_right, to_left;  // their lower sides, turned
+  to_right.rotation = Eigen::AngleAxis<double>(std::numbers::pi / 2, V::UnitZ()).toRotationMatrix();
+  to_left.rotation = Eigen::AngleAxis<double>(-std::numbers::pi / 2, V::UnitZ()).toRotationMatrix();
+  const auto tool = box(V(0.02, 0.01, 0.02));
+  const double reach = -TriangleMesh<double>(tool.mesh).lower().y();
+  to_right.translation = V(-half - reach + d, y, 0);
+  to_left.translation = V(half + reach - d, y, 0);
+  using Jaw = Touch<MeshTool, Coulomb>;
+  const auto pinch = [&](Jaw& left, Jaw& right, bool coupled) {
+    double force = 0;
+    for (int i = 0; i < 8; ++i) {
+      if (coupled) left.set_beside(right.loads());
+      force = left.tick(to_right, 1e-3).wrench.force.x();
+      if (coupled) right.set_beside(left.loads());
+      (void)right.tick(to_left, 1e-3);
+    }
+    return force;
+  };
+  const Coulomb friction({.mu_static = 0.4, .mu_dynamic = 0.3});
+  Jaw left(block(), tool, friction), right(block(), tool, friction);
+  const double alone = pinch(left, right, false);
+  left.reset(), right.reset();
+  const test::HeapCount heap;
+  const double both = pinch(left, right, true);
+  CHECK(heap.allocations() == 0);
+  MESSAGE("alone ", alone, " N, coupled ", both, " N");
+  CHECK(both / alone > 1.1);  // the body cannot give way to the other side
+  std::vector<float> p(3 * n);
+  (void)right.draw(VertexBuffer<float>{.positions = p.data()});
+  for (std::size_t v = 0; v < n; ++v) {
+    const V x = block().mesh().vertices()[v];
+    if (std::abs(x.y() - y) > 0.005 || std::abs(x.z()) > 0.005 || std::abs(x.x()) < 0.999 * half) continue;
+    CHECK_ABSOLUTE(std::abs(p[3 * v]), half - d, 1e-4);  // 5 % of the depth: some 40 points on each
+  }
+}
+
 TEST_CASE("touch, two threads: every drawn shape is that of one tick, and none comes twice or late") {
   BallTouch& touch = ball_on_ellipsoid();
   const auto& vertices = ellipsoid().mesh().vertices();

@@ -3,17 +3,16 @@
 
 /// @file What loads at a contact's points do to each other on the half-space: the matrix of a tick.
 ///
-///     u_i = sum_j K_ij P_j,   P = f / (4 pi mu),   e = (X_i - X_j)/r,   b = 1 - 2 nu
-///     K_ij = ((1 + b) I + (1 - b) e e^T + b (m e^T - e m^T)) / r                        Boussinesq, Cerruti
-///     K_ii = k/sqrt(A_i) ((1 + b) I + (1 - b)/2 (I - m m^T)),   k = 3.92               own cell
+///     u_i = sum_j K_ij P_j,   P = f / (4 pi mu);   K_ij: half_space_kernel.hpp
+///     K_ii = k/sqrt(A_i) ((1 + b) I + (1 - b)/2 (I - m m^T)),   k = 3.92,   b = 1 - 2 nu       own cell
 ///
-/// X_i: where the point's load acts on the undeformed surface, m: the mean of both points' directions. k
-/// makes the sum over an even lattice equal to the integral of any smooth pressure, as in the corrected
+/// k makes the sum over an even lattice equal to the integral of any smooth pressure, as in the corrected
 /// trapezoidal rule for 1/r: 3.900 for squares, 3.921 for hexagons. With the mean over a disc, 3.01, a ball
 /// on 50 points is 3.4 % too stiff, with this it is within 0.3 %. K_ji = K_ij^T: pairs i > j are kept.
 /// Source: [johnson1985], ch. 3; [marin2014].
 
 #include <palpate/core/simd_math.hpp>
+#include <palpate/resolved/detail/half_space_kernel.hpp>
 #include <palpate/resolved/detail/vector_list.hpp>
 
 #include <algorithm>
@@ -153,7 +152,7 @@ class PointSystem {
     V sum{};
     for (std::size_t i = 0; i < stride_; i += V::size()) {
       const SimdVec3<V> mi = m_.load(i);
-      sum += V(q + i) * dot(mi, pushed(between(i, x, mi, each(n), area), each(n)));
+      sum += V(q + i) * dot(mi, pushed(b_, between(i, x, mi, each(n), area), each(n)));
     }
     return reduce(sum);
   }
@@ -186,11 +185,6 @@ class PointSystem {
   AlignedList<float> depth;  ///< along the directions of pressing [m]
 
  private:
-  struct Pair {
-    V inverse;      // 1/r
-    SimdVec3<V> e;  // from j to i
-    SimdVec3<V> m;  // mean of both directions of pressing
-  };
   [[nodiscard]] static std::size_t first_of(std::size_t j) noexcept { return j / V::size() * V::size(); }
 
   // Directions, depths along them, and feet.
@@ -213,19 +207,10 @@ class PointSystem {
   }
 
   // Points i .. on, pressing along mi, seen from a point at x that presses along m.
-  [[nodiscard]] PALPATE_INLINE Pair between(std::size_t i, const Vec3<float>& x, const SimdVec3<V>& mi,
-                                            const SimdVec3<V>& m, float area) const noexcept {
-    const SimdVec3<V> r = x_.load(i) - each(x);
-    // Loads of a steep wall act at nearly one position: no nearer than half a cell, or the matrix is not
-    // positive.
-    const V inverse = inverse_sqrt((max)(dot(r, r), V(0.26f * area)));
-    return {inverse, inverse * r, V(0.5f) * (mi + m)};
-  }
-  // K_ij f.
-  [[nodiscard]] PALPATE_INLINE SimdVec3<V> pushed(const Pair& p, const SimdVec3<V>& f) const noexcept {
-    const V b(b_), along = dot(p.e, f);
-    return (V(1 + b_) * p.inverse) * f + (p.inverse * (V(1 - b_) * along - b * dot(p.m, f))) * p.e +
-           (p.inverse * b * along) * p.m;
+  [[nodiscard]] PALPATE_INLINE PointPair<V> between(std::size_t i, const Vec3<float>& x,
+                                                    const SimdVec3<V>& mi, const SimdVec3<V>& m,
+                                                    float area) const noexcept {
+    return point_pair(x_.load(i) - each(x), mi, m, V(area));
   }
   // Column j of the matrix, of what is at and below the diagonal, to `to`; by entries in each register's
   // rows: one along the directions of pressing, or nine. Returns its end.
@@ -237,9 +222,9 @@ class PointSystem {
     float* const first = to;
     for (std::size_t i = first_of(j); i < stride_; i += V::size(), to += entries * V::size()) {
       const SimdVec3<V> mi = m_.load(i);
-      const Pair p = between(i, x, mi, m, area);
+      const PointPair<V> p = between(i, x, mi, m, area);
       if constexpr (entries == 1) {
-        dot(mi, pushed(p, m)).copy_to(to);
+        dot(mi, pushed(b_, p, m)).copy_to(to);
       } else {
         const auto put = [to](std::size_t row, std::size_t col, const V& K)
                              PALPATE_INLINE_LAMBDA { K.copy_to(to + (3 * row + col) * V::size()); };

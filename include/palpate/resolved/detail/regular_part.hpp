@@ -33,8 +33,7 @@ class RegularPart {
     weights_.resize(capacity);
     w_.resize(capacity);
     const std::size_t padded = AlignedList<float>::padded(4 * max_nodes);
-    load_.resize(padded);
-    u_.resize(padded);
+    for (auto* list : {&load_, &u_, &u_beside_}) list->resize(padded);
     matrix_.resize(padded * 3 * max_nodes);
   }
 
@@ -43,6 +42,8 @@ class RegularPart {
     size_ = 0;
     was_used_ = used_;
     used_.clear();
+    has_all_ = true;
+    beside_.clear();
   }
   static constexpr std::uint32_t anywhere = ~0u;
   /// The next point, at x in object coordinates. `triangle` of the load mesh: where it was, or anywhere; then
@@ -50,6 +51,17 @@ class RegularPart {
   template <class Body>
   void add(const Body& body, const Vec3<double>& x, std::uint32_t& triangle) noexcept {
     place(body.field(), x, triangle, weights_[size_++], true);
+  }
+  /// A load P of another tool, likewise.
+  template <class Body>
+  void add_beside(const Body& body, const Vec3<double>& x, std::uint32_t& triangle,
+                  const Vec3<float>& P) noexcept {
+    Weights weights;
+    place(body.field(), x, triangle, weights, true);
+    for (const Weight& w : weights) {
+      while (beside_.size() <= w.node) beside_.push_back(Four{});
+      beside_[w.node] += Four(w.value) * Four(P.x(), P.y(), P.z(), 0.f);
+    }
   }
   /// The matrix between the nodes in use.
   void build() noexcept {
@@ -68,6 +80,9 @@ class RegularPart {
       }
   }
 
+  /// False where nodes were left out.
+  [[nodiscard]] bool has_all() const noexcept { return has_all_; }
+
   /// u += w along the directions of pressing, by loads q along them.
   void add(const PointSystem& system, const float* q, float* u) noexcept {
     gather([&](std::size_t i) { return Vec3<float>(q[i] * system.direction(i)); });
@@ -81,32 +96,34 @@ class RegularPart {
   /// The nodes' displacements by load(i) at the points.
   template <class Load>
   void gather(const Load& load) noexcept {
-    float *const f = load_.data(), *const u = u_.data();
+    float* const f = load_.data();
     for (std::size_t i = 0; i < stride_; i += Group::size()) store(f + i, Group{});
     for (std::size_t i = 0; i < size_; ++i) {
       const Vec3<float> P = load(i);
       const Four P4(P.x(), P.y(), P.z(), 0.f);
       for (const Weight& w : weights_[i]) store(f + 4 * w.node, Four(f + 4 * w.node) + Four(w.value) * P4);
     }
-    for (std::size_t i = 0; i < stride_; i += Group::size()) {  // some of u at a time through all columns
-      Group sum{};
-      const float* column = &matrix_[i];
-      for (std::size_t j = 0; j < used_.size(); ++j)
-        for (std::size_t c = 0; c < 3; ++c, column += stride_)
-          sum += simd_factor<float>(f[4 * j + c]) * Group(column);
-      store(u + i, sum);
-    }
+    multiply(u_);
   }
   /// w at point i, of what was gathered last.
-  [[nodiscard]] Vec3<float> of(std::size_t i) const noexcept { return at(weights_[i]); }
-  /// Gradient along the surface of n.w, n the surface's own normal, w of what was gathered last: by
-  /// regression over the pressures q. One gradient for all is continuous in the pose; the load mesh's own
-  /// jumps from triangle to triangle.
-  [[nodiscard]] Vec3<float> slope(const PointSystem& system, const float* q) noexcept {
+  [[nodiscard]] Vec3<float> of(std::size_t i) const noexcept { return at(weights_[i], u_); }
+  /// The nodes' displacements by what other tools push with.
+  void gather_beside() noexcept {
+    for (std::size_t i = 0; i < stride_; i += Group::size()) store(&load_[i], Group{});
+    for (std::size_t k = 0; k < beside_.size(); ++k) store(&load_[4 * k], beside_[k]);
+    multiply(u_beside_);
+  }
+  /// w at point i of that.
+  [[nodiscard]] Vec3<float> beside(std::size_t i) const noexcept { return at(weights_[i], u_beside_); }
+  /// Gradient along the surface of n.w, n the surface's own normal, w of what was gathered last and
+  /// `beside(i)`, what others' loads do: by regression over the pressures q. One gradient for all is
+  /// continuous in the pose; the load mesh's own jumps from triangle to triangle.
+  template <class Beside>
+  [[nodiscard]] Vec3<float> slope(const PointSystem& system, const float* q, const Beside& beside) noexcept {
     Vec3<float> mean_x = Vec3<float>::Zero(), m = Vec3<float>::Zero();
     float sum = 0, mean_w = 0;
     for (std::size_t i = 0; i < size_; ++i) {
-      w_[i] = system.normal(i).dot(of(i));
+      w_[i] = system.normal(i).dot(of(i) + beside(i));
       sum += q[i], mean_w += q[i] * w_[i];
       mean_x += q[i] * system.foot(i), m += q[i] * system.direction(i);
     }
@@ -123,13 +140,14 @@ class RegularPart {
     const float size = spread.trace();  // powers of small numbers would be 0
     return (spread / size).inverse() * (with_w / size);
   }
-  /// w along m at a further point, of what was gathered last.
+  /// w along m at a further point, of what was gathered last, with others' loads if there are any.
   template <class Body>
   [[nodiscard]] float normal_at(const Body& body, const Vec3<double>& x, std::uint32_t& triangle,
                                 const Vec3<float>& m) noexcept {
     Weights weights;
     place(body.field(), x, triangle, weights, false);
-    return m.dot(at(weights));
+    const float w = m.dot(at(weights, u_));
+    return beside_.empty() ? w : w + m.dot(at(weights, u_beside_));
   }
 
  private:
@@ -168,7 +186,10 @@ class RegularPart {
   std::uint16_t use(const ResponseField& field, std::uint32_t node) noexcept {
     std::uint16_t slot = slot_of_[node];
     if (slot == none) {
-      if (used_.size() == max_nodes) return none;
+      if (used_.size() == max_nodes) {
+        has_all_ = false;
+        return none;
+      }
       slot = 0;  // the one that was in use longest ago
       for (std::uint16_t k = 1; k < max_nodes; ++k)
         if (tick_of_[k] < tick_of_[slot]) slot = k;
@@ -201,9 +222,21 @@ class RegularPart {
     }
   }
 
-  [[nodiscard]] Vec3<float> at(const Weights& weights) const noexcept {
+  // u = w load_ at the nodes.
+  void multiply(AlignedList<float>& u) noexcept {
+    const float* const f = load_.data();
+    for (std::size_t i = 0; i < stride_; i += Group::size()) {  // some of u at a time through all columns
+      Group sum{};
+      const float* column = &matrix_[i];
+      for (std::size_t j = 0; j < used_.size(); ++j)
+        for (std::size_t c = 0; c < 3; ++c, column += stride_)
+          sum += simd_factor<float>(f[4 * j + c]) * Group(column);
+      store(&u[i], sum);
+    }
+  }
+  [[nodiscard]] static Vec3<float> at(const Weights& weights, const AlignedList<float>& u) noexcept {
     Four sum{};
-    for (const Weight& w : weights) sum += Four(w.value) * Four(&u_[4 * w.node]);
+    for (const Weight& w : weights) sum += Four(w.value) * Four(&u[4 * w.node]);
     return {sum[0], sum[1], sum[2]};
   }
 
@@ -215,10 +248,12 @@ class RegularPart {
   std::vector<Weights> weights_;        // of the points
   std::vector<float> w_;                // of slope()
   FixedVector<std::uint16_t, max_nodes> used_, was_used_;
-  AlignedList<float> load_, u_, matrix_;  // of the nodes in use, four numbers each; the matrix by column
+  AlignedList<float> load_, u_, u_beside_;  // of the nodes in use, four numbers each
+  FixedVector<Four, max_nodes> beside_;     // loads of other tools, likewise
+  AlignedList<float> matrix_;               // by column
   std::size_t size_ = 0, stride_ = 0;
   std::uint32_t tick_ = 2;
-  bool changed_ = true;
+  bool changed_ = true, has_all_ = true;
 };
 
 }  // namespace palpate::detail

@@ -11,6 +11,7 @@
 #include <palpate/resolved/detail/bounded_list.hpp>
 #include <palpate/resolved/detail/contact_area.hpp>
 #include <palpate/resolved/detail/convex_problem.hpp>
+#include <palpate/resolved/detail/loads_beside.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/resolved/detail/static_strength.hpp>
 #include <palpate/resolved/detail/touching_point.hpp>
@@ -26,7 +27,7 @@
 namespace palpate::detail {
 
 /// What a tick leaves for the next: loads at the points, and where those that stick hold the surface.
-template <Real S, ContactCompliance Compliance, bool has_friction_>
+template <Real S, ContactCompliance Compliance, bool has_friction_, std::size_t max_beside>
 class ResolvedState {
  public:
   static constexpr bool has_friction = has_friction_;
@@ -39,7 +40,8 @@ class ResolvedState {
         contacts_(capacity),
         system_(capacity, static_cast<float>(1 - 2 * body.nu()), has_friction),
         unloaded_(capacity),
-        regular_(body, capacity) {
+        regular_(body, capacity),
+        beside_(max_beside, capacity, static_cast<float>(1 - 2 * body.nu())) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
     pressure_.resize(padded);
     if constexpr (has_friction) friction_.resize(padded);
@@ -48,6 +50,7 @@ class ResolvedState {
   void reset() noexcept {
     contacts_.clear();
     tick_ += 2;  // no point has touched in the tick before
+    if constexpr (Beside::active) beside_.set({});
     forget();
   }
   [[nodiscard]] bool has_contact() const noexcept { return !contacts_.empty(); }
@@ -65,6 +68,12 @@ class ResolvedState {
       out.push_back({origin_ + system_.foot(i).template cast<S>(), system_.direction(i).template cast<S>(),
                      per_load_ * p.load.template cast<S>(), static_cast<S>(system_.area(i))});
     }
+  }
+  /// Loads of other tools on the same body, for the next solve().
+  void set_beside(std::span<const SurfaceLoad<S>> loads) noexcept
+    requires(max_beside > 0)
+  {
+    beside_.set(loads);
   }
   [[nodiscard]] const Residual& residual() const noexcept { return residual_; }
   [[nodiscard]] bool slides() const noexcept { return slides_; }
@@ -93,16 +102,18 @@ class ResolvedState {
     return true;
   }
 
-  /// Solves for the loads with the tool at X.
+  /// Solves for the loads with the tool at X. False where there is no room for all that acts.
   template <class Friction>
-  void solve(const Force& force, const Friction& friction, const ToolPoints<S>& tool,
-             const Pose<S>& X) noexcept {
+  [[nodiscard]] bool solve(const Force& force, const Friction& friction, const ToolPoints<S>& tool,
+                           const Pose<S>& X) noexcept {
     contacts_.clear();
     residual_ = {};
+    per_load_ = static_cast<S>(4 * std::numbers::pi * force.shear_modulus());
     const Pose<S> before = std::exchange(pose_, X);
     if (touching_.empty()) {
+      if constexpr (Beside::active) beside_.set({});
       forget();
-      return;
+      return true;
     }
     float deepest = 0, size2 = 0;
     for (const Touching& c : touching_) {
@@ -124,11 +135,19 @@ class ResolvedState {
       if constexpr (RegularPart::active) regular_.gather([this](std::size_t i) { return load(i); });
       if (round == most_rounds || !take_in(force, tool, tolerance)) break;
     }
-    finish(force, tool);
+    finish(tool);
+    bool all = true;
+    if constexpr (RegularPart::active) all = regular_.has_all();
+    if constexpr (Beside::active) {
+      all = all && beside_.has_all();
+      beside_.set({});
+    }
+    return all;
   }
 
  private:
   using RegularPart = typename RegularPartOf<Compliance>::type;
+  using Beside = std::conditional_t<(max_beside > 0), LoadsBeside<S>, NoLoadsBeside>;
   /// Points whose gap was less than this share of the depth are solved for at once.
   static constexpr float near = 0.05f;
   /// How often points may come in within a tick.
@@ -167,8 +186,17 @@ class ResolvedState {
         regular_.add(force.compliance(),
                      (origin_ + system_.foot(i).template cast<S>()).template cast<double>(),
                      point(i).triangle);
-      regular_.build();
     }
+    if constexpr (Beside::active) beside_.place(force.compliance(), origin_, per_load_, regular_);
+    if constexpr (RegularPart::active) regular_.build();
+    if constexpr (Beside::active) beside_.give_way(system_, regular_);
+  }
+  /// Displacement of point i by others' loads [m].
+  [[nodiscard]] Vec3<float> given(std::size_t i) const noexcept {
+    if constexpr (Beside::active)
+      return beside_.given(i);
+    else
+      return Vec3<float>::Zero();
   }
 
   template <class Friction>
@@ -183,7 +211,7 @@ class ResolvedState {
           size(), friction_, system_.directions(), system_.depth.data(), system_.tangential_share(),
           system_.flexible_step(), tolerance, iterations,
           [this](const VectorList& P, VectorList& u) noexcept { displace(P, u); },
-          [&](float q) noexcept { return coefficient(friction, force, q); });
+          [&](float q) noexcept { return coefficient(friction, q); });
       for (std::size_t i = 0; i < size(); ++i) {
         const Vec3<float> m = system_.direction(i);
         pressure_.q[i] = (std::max)(m.dot(friction_.load[i]), 0.f);
@@ -208,7 +236,7 @@ class ResolvedState {
       meets += lacks * goes, size2 += goes * goes;
       if (!p.sticks) continue;
       const Vec3<float> across = tangential<float>(p.u_step, m);
-      meets += across.dot(p.anchor - p.u), size2 += across.squaredNorm();
+      meets += across.dot(p.anchor - given(i) - p.u), size2 += across.squaredNorm();
     }
     return size2 > 0 ? clamp(meets / size2, -most_predicted, most_predicted) : 0.f;
   }
@@ -220,7 +248,7 @@ class ResolvedState {
       if constexpr (has_friction) {
         friction_.load.set(i, P);
         friction_.held[i] = p.loaded ? 1.f : 0.f;
-        friction_.anchor.set(i, p.anchor);
+        friction_.anchor.set(i, p.anchor - given(i));
       }
     }
     for (std::size_t i = size(); i < system_.stride(); ++i) {
@@ -248,6 +276,7 @@ class ResolvedState {
       const Vec3<S> foot = at.x - (depth * m).template cast<S>();
       float sunk = system_.normal_displacement_at(pressure_.q.data(), relative(foot), m,
                                                   static_cast<float>(tool.area(at.point)));
+      if constexpr (Beside::active) sunk += m.dot(beside_.displacement_at(relative(foot), m));
       if constexpr (RegularPart::active)
         sunk += regular_.normal_at(force.compliance(), foot.template cast<double>(),
                                    points_[at.point].triangle, m);
@@ -272,8 +301,8 @@ class ResolvedState {
   }
   /// mu of every point: the law's limit of the whole contact over its normal force, of loads q.
   template <class Friction>
-  float coefficient(const Friction& friction, const Force& force, float q) noexcept {
-    const S normal = static_cast<S>(q) * static_cast<S>(4 * std::numbers::pi * force.shear_modulus());
+  float coefficient(const Friction& friction, float q) noexcept {
+    const S normal = static_cast<S>(q) * per_load_;
     return normal > S(0) ? strength_.coefficient(friction, normal) : 0.f;
   }
   // Static strength fades as the tool slides over the surface; points that have just come in do not hold it.
@@ -301,11 +330,11 @@ class ResolvedState {
       return (pressure_.r[i] + system_.depth[i]) * system_.direction(i);
   }
 
-  void finish(const Force& force, const ToolPoints<S>& tool) noexcept {
-    const S scale = per_load_ = static_cast<S>(4 * std::numbers::pi * force.shear_modulus());
+  void finish(const ToolPoints<S>& tool) noexcept {
     for (std::size_t i = 0; i < size(); ++i) point(i).go_on(load(i), displacement(i));
     Vec3<float> slope = Vec3<float>::Zero();
-    if constexpr (RegularPart::active) slope = regular_.slope(system_, pressure_.q.data());
+    if constexpr (RegularPart::active)
+      slope = regular_.slope(system_, pressure_.q.data(), [this](std::size_t i) { return given(i); });
     float total = 0, sticking = 0;
     for (std::size_t i = 0; i < size(); ++i) {
       const Touching& at = touching_[inside_[i]];
@@ -322,16 +351,16 @@ class ResolvedState {
                     limit2 = friction_.mu * q * (friction_.mu * q);
         p.sticks = held2 < slips_from * limit2;
         if (p.sticks) slips = held2 / limit2, sticking += q;
-        p.anchor =
-            tangential<float>(p.sticks && friction_.held[i] > 0 ? friction_.anchor[i] : friction_.u[i], m);
+        p.anchor = tangential<float>(
+            given(i) + (p.sticks && friction_.held[i] > 0 ? friction_.anchor[i] : friction_.u[i]), m);
         total += q;
       }
       // The tool feels minus the gradient of the energy: of the depth along the direction of pressing, and of
       // the regular part as far as the point slips; where it sticks the body goes with it.
       const Vec3<float> felt = p.load + q * (n / n.dot(m) - m - slips * slope);
       contacts_.push_back({at.point, p.sticks, at.x, -at.m.template cast<S>(),
-                           -scale * felt.template cast<S>(), scale * static_cast<S>(q) / tool.area(at.point),
-                           static_cast<S>(at.depth)});
+                           -per_load_ * felt.template cast<S>(),
+                           per_load_ * static_cast<S>(q) / tool.area(at.point), static_cast<S>(at.depth)});
     }
     if constexpr (has_friction) remember_strength(total, sticking);
   }
@@ -345,6 +374,7 @@ class ResolvedState {
   PressureLists pressure_;
   PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<has_friction, FrictionLists, Absent<4>> friction_;
   PALPATE_NO_UNIQUE_ADDRESS RegularPart regular_;
+  PALPATE_NO_UNIQUE_ADDRESS Beside beside_;
   Residual residual_;
   Pose<S> pose_;
   Vec3<S> origin_;

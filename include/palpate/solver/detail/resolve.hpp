@@ -20,7 +20,7 @@ class ResolvedCollector {
       : body_(force.compliance()), tool_points_(tool.size()) {}
 
   using Body = typename Force::Compliance;
-  using State = ResolvedState<S, Body, has_friction>;
+  using State = ResolvedState<S, Body, has_friction, Contacts::max_beside>;
   template <class>
   using Sum = NoMap;  // there is no sum by a law
   [[nodiscard]] State initial_state() const { return State(body_, tool_points_, Contacts::max_points); }
@@ -55,7 +55,7 @@ class ResolvedCollector {
           }
         });
     const bool was_touching = state.has_contact();
-    state.solve(force, friction, tool, X);
+    if (!state.solve(force, friction, tool, X)) result.status |= Status::point_overflow;
     if (!state.has_contact()) return;
     result.status |= Status::contact;
     if (deepest > object.reach()) result.status |= Status::beyond_reach;

@@ -4,6 +4,7 @@
 /// @file What a solver remembers from tick to tick. Of policies that are absent there is nothing.
 
 #include <palpate/contact/contact_state.hpp>
+#include <palpate/contact/surface_load.hpp>
 #include <palpate/core/absent.hpp>
 #include <palpate/core/fixed_vector.hpp>
 #include <palpate/law/map/concept.hpp>
@@ -12,8 +13,10 @@
 #include <palpate/solver/rate_window.hpp>
 #include <palpate/solver/tick_result.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <span>
 #include <type_traits>
 #include <utility>
 
@@ -68,6 +71,12 @@ struct TickMemory {
     requires requires(const Regions& r) { r.residual(); }
   {
     regions_.loads(out);
+  }
+  void set_beside(std::span<const SurfaceLoad<S>> loads) noexcept
+    requires requires(Regions& r) { r.set_beside(loads); }
+  {
+    regions_.set_beside(loads);
+    last_.ticks = (std::min)(last_.ticks, 1);
   }
   [[nodiscard]] const auto& residual() const noexcept
     requires requires(const Regions& r) { r.residual(); }
