@@ -73,6 +73,11 @@ TEST_CASE("pressed body: the contact vertex moves by D, the bottom centre stays,
   const std::vector<ContactState<double>> contacts{pressed({0, 0.02, 0}, 2e-3, 0.5)};
   const auto moved = scene.model.write(contacts, out);
   CHECK(moved.vertices > mesh.vertices.size() / 2);
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+    if (at(i) != mesh.vertices[i]) {
+      CHECK((at(i).array() >= moved.lower.array()).all());
+      CHECK((at(i).array() <= moved.upper.array()).all());
+    }
   // Mesh vertices lie on the axis ends to 1e-9 m.
   CHECK((at(top) - mesh.vertices[top] - Vec3<double>(0, -2e-3, 0)).norm() <= 1e-8);
   CHECK((at(low) - mesh.vertices[low]).norm() <= 1e-9);

@@ -139,6 +139,17 @@ TEST_CASE("tick after tick the buffer equals one written from rest, positions an
   }
 }
 
+TEST_CASE("a buffer filled with the rest shape after one face moved has all of its normals") {
+  const auto mesh = box.mesh(300);
+  auto field = make_field<LinearInterpolation<double>>(box, mesh);
+  Buffer<double> out(mesh.vertices.size()), other(mesh.vertices.size());
+  field.write_rest(out.view);
+  const std::vector<double> rest = out.normals;
+  field.write(Contacts{pressed({0.002, 0.02, 0.001}, 1e-3)}, Corners(8, Vec3<double>::Zero()), out.view);
+  field.write_rest(other.view);
+  CHECK(other.normals == rest);
+}
+
 TEST_CASE("normals are area-weighted over the displaced triangles") {
   const auto mesh = ellipsoid.mesh(300);
   auto field = make_field<PhongInterpolation<double>>(ellipsoid, mesh);

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include "support/check.hpp"
 
+#include <palpate/luo_xiao/detail/local_shape.hpp>
 #include <palpate/luo_xiao/neighbourhood.hpp>
 
 #include <doctest/doctest.h>
+
+#include <array>
 
 using namespace palpate;
 using palpate::test::ulps;
@@ -60,6 +63,30 @@ TEST_CASE("radius: as given, else twice the region's") {
   CHECK(AreaNeighbourhood<double>({.radius = 0.004}).radius(c) == 0.004);
   c.area = 0;
   CHECK(AreaNeighbourhood<double>({}).radius(c) == 0.0);
+}
+
+TEST_CASE_TEMPLATE("under the tool's face a vertex ends on the face, at whatever height it began", S, float,
+                   double) {
+  // A face of radius 10 mm pressed 4 mm into a level surface at y = 0.
+  const S depth = S(4e-3), flat = S(10e-3), rho = S(9.9e-3);
+  const detail::LocalShape<S, NeighbourhoodForm::tool_face> shape{
+      .target = Vec3<S>(0, -depth, 0), .depth = depth, .flat = flat, .radius = S(20e-3)};
+  constexpr std::size_t count = detail::simd_group<S>::size();
+  std::array<std::array<S, count>, 3> rest{};
+  for (std::size_t i = 0; i < count; ++i) {  // from just above the face's end to as high above the surface
+    rest[0][i] = rho;
+    rest[1][i] = depth * (S(1.9) * static_cast<S>(i) / static_cast<S>(count) - S(0.9));
+  }
+  auto x = rest;
+  shape.apply({rest[0].data(), rest[1].data(), rest[2].data()}, count,
+              {x[0].data(), x[1].data(), x[2].data()});
+  for (std::size_t i = 0; i < count; ++i) {
+    CHECK(x[0][i] == rho);
+    if (rest[1][i] <= S(0)) CHECK_ABSOLUTE(x[1][i], -depth, ulps<S>(8) * static_cast<long double>(depth));
+    // Above the surface, as a bulge is, it goes down by as much as the surface.
+    if (rest[1][i] > S(0))
+      CHECK_ABSOLUTE(x[1][i], rest[1][i] - depth, ulps<S>(8) * static_cast<long double>(depth));
+  }
 }
 
 TEST_CASE("areas that are not finite or negative: no reduction") {

@@ -2,6 +2,7 @@
 #include "contract/interpolation.hpp"
 
 #include <palpate/luo_xiao/interpolation/detail/face_weights.hpp>
+#include <palpate/luo_xiao/interpolation/detail/hull.hpp>
 #include <palpate/luo_xiao/interpolation/linear.hpp>
 
 #include <doctest/doctest.h>
@@ -75,6 +76,20 @@ std::array<long double, 3> reference(const Vec3<double>& v, const Vec3<double>& 
 }
 
 }  // namespace
+
+TEST_CASE("hull: a corner within the tolerance of a facet's plane belongs to it, beyond it not") {
+  const double tolerance = 1e-3;
+  const auto facets = [&](double out) {
+    std::vector<Vec3<double>> corners;
+    for (int i = 0; i < 8; ++i)
+      corners.push_back(Vec3<double>(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1) / std::sqrt(3.0));
+    corners[7].z() += out;
+    return detail::hull_facets(corners, tolerance, "hull").size();
+  };
+  CHECK(facets(0.9 * tolerance) == 6);
+  CHECK(facets(-0.9 * tolerance) == 6);
+  CHECK(facets(1.1 * tolerance) == 7);  // two triangles for the square
+}
 
 TEST_CASE_TEMPLATE("weights are >= 0 and sum to 1, with and without a contact", S, float, double) {
   check_unity(Ellipsoid<S>({.axes = {S(0.03), S(0.02), S(0.015)}}));
