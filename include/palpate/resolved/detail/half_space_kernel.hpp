@@ -9,6 +9,7 @@
 /// pressing. Source: Boussinesq and Cerruti, [johnson1985], ch. 3.
 
 #include <palpate/core/simd_math.hpp>
+#include <palpate/core/simd_vec3.hpp>
 
 namespace palpate::detail {
 

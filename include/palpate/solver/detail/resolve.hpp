@@ -41,11 +41,13 @@ class ResolvedCollector {
             Vec3<S> m(-in.gradient_x[k], -in.gradient_y[k], -in.gradient_z[k]);
             const S length = m.norm();
             if (!(length > S(0))) continue;
-            // What faces away from the body cannot press on it; a wall fades out over some ten degrees.
+            // What faces away from the body cannot press on it; a wall fades out over some ten degrees, and
+            // is out before it is upright: rounding would bring it in and out.
             S depth = in.depth[k];
             if (!outward.empty()) {
               const Vec3<S>& out = outward[begin + k];
-              const S facing = (X.rotation * out).dot(m), whole = S(0.2) * length * out.norm();
+              const S size = length * out.norm(), facing = (X.rotation * out).dot(m) - S(1e-4L) * size,
+                      whole = S(0.2L) * size;
               if (!(facing > S(0))) continue;
               if (facing < whole) depth *= facing / whole;
             }
