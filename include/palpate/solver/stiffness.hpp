@@ -17,7 +17,8 @@ namespace palpate {
 ///
 /// Central differences, twelve evaluations; the step is the third root of the rounding unit times the depth,
 /// so the error is about its square: 1e-10 of K in double, 1e-4 in float, where the law is smooth over a
-/// step. `scratch` is another state of the same solver; no heap. Zero without contact.
+/// step. A resolved contact is solved to a tolerance, 1e-4 of the depths: its step is 2 % of the depth, the
+/// error about 1 %. `scratch` is another state of the same solver; no heap. Zero without contact.
 template <class Solver>
 [[nodiscard]] Eigen::Matrix<typename Solver::Scalar, 6, 6> stiffness(
     const Solver& solver, const Pose<typename Solver::Scalar>& X, const typename Solver::State& state,
@@ -32,7 +33,9 @@ template <class Solver>
     arm = (std::max)(arm, (contact.centre - centre).norm());
   }
   if (!(depth > S(0))) return K;
-  const S step = std::cbrt(std::numeric_limits<S>::epsilon()) * depth;
+  S share = std::cbrt(std::numeric_limits<S>::epsilon());
+  if constexpr (requires { requires Solver::is_resolved; }) share = S(0.02L);
+  const S step = share * depth;
   const S angle = step / (std::max)(arm, depth);
   const auto wrench = [&](int axis, S sign) noexcept {
     Pose<S> moved = X;
