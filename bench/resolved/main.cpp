@@ -4,8 +4,10 @@
 /// load. A ball of 15 mm is pressed 1 mm deep and slides to and fro at up to 0.1 m/s, 1 kHz, or sways by half a
 /// millimetre, so that the middle of the contact sticks: on a half-space, where the exact sphere's force is
 /// known, and on a block of 100 mm with a response field. Only points near the ball's pole are asked, so that
-/// detection is small.
+/// detection is small. Beside it tools all of whose points are asked: four such balls, and a box of a thousand
+/// points that is pressed flat.
 ///
+///     tool                   ball, four balls, box
 ///     motion                 slides or sways
 ///     points                 mean number that carries load
 /// slowest_position_us, p50_us, p999_us, max_us of a tick, detection included; the first: each position's
@@ -45,10 +47,31 @@ SurfaceSamples<double> pole(double spacing) {
   return near;
 }
 
+/// Points near the poles of four balls.
+SurfaceSamples<double> four_poles(double spacing) {
+  const SurfaceSamples<double> one = pole(spacing);
+  SurfaceSamples<double> out;
+  for (const V& offset : {V(-1, 0, -1), V(1, 0, -1), V(-1, 0, 1), V(1, 0, 1)})
+    for (std::size_t i = 0; i < one.points.size(); ++i) {
+      out.points.push_back(one.points[i] + 0.009 * offset);
+      out.areas.push_back(one.areas[i]);
+      out.vector_areas.push_back(one.vector_areas[i]);
+    }
+  return out;
+}
+/// A thousand points on a box, a tenth of them on its lower face, which is as low as the ball's pole.
+SurfaceSamples<double> thousand() {
+  constexpr double width = 0.02, height = 0.045;  // 2 (w^2 + 2 w h) = 10 w^2
+  SurfaceSamples<double> box = contact_samples(
+      TriangleMesh<double>(Box<double>({.half = V(width / 2, height / 2, width / 2)}).mesh(4000)), 0.002);
+  for (V& p : box.points) p.y() += height / 2 - R;
+  return box;
+}
+
 template <class Compliance, class Friction>
-void run(const Output& out, const char* body, const char* friction_name, const char* motion, double amplitude,
-         const Compliance& compliance, const Friction& friction, const SurfaceSamples<double>& samples,
-         bool exact) {
+void run(const Output& out, const char* tool, const char* body, const char* friction_name, const char* motion,
+         double amplitude, const Compliance& compliance, const Friction& friction,
+         const SurfaceSamples<double>& samples, bool exact) {
   using Elastic = ElasticContact<double, Compliance>;
   const double area = std::accumulate(samples.areas.begin(), samples.areas.end(), 0.0);
   ContactSolver<Box<double>, Elastic, Friction, ContactPoints<512>> solver(
@@ -82,7 +105,7 @@ void run(const Output& out, const char* body, const char* friction_name, const c
   const auto allocations = heap.allocations();
   const double ticks = static_cast<double>(times.count());
   char row[256];
-  std::snprintf(row, sizeof row, "%s,%s,%s,%.0f,%zu,%.1f,%.1f,%.1f,%.1f,%.1f,%s,%zu", body, friction_name,
+  std::snprintf(row, sizeof row, "%s,%s,%s,%s,%.0f,%zu,%.1f,%.1f,%.1f,%.1f,%.1f,%s,%zu", tool, body, friction_name,
                 motion, points / ticks, samples.points.size(),
                 us(static_cast<std::uint64_t>(*std::max_element(least.begin(), least.end()))),
                 us(times.quantile(0.5)), us(times.quantile(0.999)), us(times.max()), iterations / ticks,
@@ -96,7 +119,7 @@ void run(const Output& out, const char* body, const char* friction_name, const c
 
 int main(int argc, char** argv) {
   const Output out(argc, argv,
-                   "body,friction,motion,points,sampled,slowest_position_us,p50_us,p999_us,max_us,iterations,"
+                   "tool,body,friction,motion,points,sampled,slowest_position_us,p50_us,p999_us,max_us,iterations,"
                    "force_error,heap_allocations");
   const HalfSpace half_space({.E = E, .nu = nu});
   const auto field = std::make_shared<const ResponseField>(
@@ -104,16 +127,26 @@ int main(int argc, char** argv) {
       ResponseField::Params{.E = E, .nu = nu, .mesh = {.vertices = out.quick ? 300. : 600.}});
   const ResponseCompliance block(field);
   const CoulombFriction<double> dry({.mu_static = 0.4, .mu_dynamic = 0.4});
+  constexpr double far = 0.016, little = 5e-4;
   for (const double wanted : {10., 30., 60., 100., 200.}) {
     if (out.quick && wanted > 30) break;  // the ball has 10,000 points then
     const auto samples = pole(std::sqrt(3.14159265358979323846 * R * depth / wanted));
-    constexpr double far = 0.016, little = 5e-4;
-    run(out, "half-space", "none", "slides", far, half_space, Frictionless<double>{}, samples, true);
-    run(out, "half-space", "Coulomb", "slides", far, half_space, dry, samples, false);
-    run(out, "half-space", "Coulomb", "sways", little, half_space, dry, samples, false);
-    run(out, "block", "none", "slides", far, block, Frictionless<double>{}, samples, false);
-    run(out, "block", "Coulomb", "slides", far, block, dry, samples, false);
-    run(out, "block", "Coulomb", "sways", little, block, dry, samples, false);
+    run(out, "ball", "half-space", "none", "slides", far, half_space, Frictionless<double>{}, samples, true);
+    run(out, "ball", "half-space", "Coulomb", "slides", far, half_space, dry, samples, false);
+    run(out, "ball", "half-space", "Coulomb", "sways", little, half_space, dry, samples, false);
+    run(out, "ball", "block", "none", "slides", far, block, Frictionless<double>{}, samples, false);
+    run(out, "ball", "block", "Coulomb", "slides", far, block, dry, samples, false);
+    run(out, "ball", "block", "Coulomb", "sways", little, block, dry, samples, false);
+  }
+  const auto both = [&](const char* tool, const SurfaceSamples<double>& samples) {
+    run(out, tool, "half-space", "none", "slides", far, half_space, Frictionless<double>{}, samples, false);
+    run(out, tool, "half-space", "Coulomb", "slides", far, half_space, dry, samples, false);
+    run(out, tool, "block", "none", "slides", far, block, Frictionless<double>{}, samples, false);
+    run(out, tool, "block", "Coulomb", "slides", far, block, dry, samples, false);
+  };
+  if (!out.quick) {
+    both("four balls", four_poles(std::sqrt(3.14159265358979323846 * R * depth / 25)));
+    both("box", thousand());
   }
   return out.failures == 0 ? 0 : 1;
 }
