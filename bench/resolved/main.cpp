@@ -105,8 +105,8 @@ void run(const Output& out, const char* tool, const char* body, const char* fric
   const auto allocations = heap.allocations();
   const double ticks = static_cast<double>(times.count());
   char row[256];
-  std::snprintf(row, sizeof row, "%s,%s,%s,%s,%.0f,%zu,%.1f,%.1f,%.1f,%.1f,%.1f,%s,%zu", tool, body, friction_name,
-                motion, points / ticks, samples.points.size(),
+  std::snprintf(row, sizeof row, "%s,%s,%s,%s,%.0f,%zu,%.1f,%.1f,%.1f,%.1f,%.1f,%s,%zu", tool, body,
+                friction_name, motion, points / ticks, samples.points.size(),
                 us(static_cast<std::uint64_t>(*std::max_element(least.begin(), least.end()))),
                 us(times.quantile(0.5)), us(times.quantile(0.999)), us(times.max()), iterations / ticks,
                 exact ? std::to_string(error).c_str() : "", allocations);
@@ -118,9 +118,10 @@ void run(const Output& out, const char* tool, const char* body, const char* fric
 }  // namespace
 
 int main(int argc, char** argv) {
-  const Output out(argc, argv,
-                   "tool,body,friction,motion,points,sampled,slowest_position_us,p50_us,p999_us,max_us,iterations,"
-                   "force_error,heap_allocations");
+  const Output out(
+      argc, argv,
+      "tool,body,friction,motion,points,sampled,slowest_position_us,p50_us,p999_us,max_us,iterations,"
+      "force_error,heap_allocations");
   const HalfSpace half_space({.E = E, .nu = nu});
   const auto field = std::make_shared<const ResponseField>(
       Box<double>({.half = V::Constant(top)}).mesh(2000), [](const V& x) { return x.y() <= -top + 1e-6; },

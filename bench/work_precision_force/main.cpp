@@ -6,7 +6,9 @@
 /// above them.
 
 #include "scenes.hpp"
+#include "work_precision_force/elastic_contact.hpp"
 #include "work_precision_force/methods.hpp"
+#include "work_precision_force/table.hpp"
 
 #include <functional>
 #include <random>
@@ -15,22 +17,6 @@ namespace {
 
 using namespace bench;
 using Long = long double;
-
-struct Table {
-  const Output& out;
-  int repeats;
-
-  /// bound: what the library's own error must stay below; 0: not the library's, or nothing is promised.
-  void row(const char* problem, const std::string& method, const char* scalar, const std::string& setting,
-           double ns, double error, const char* reference, double bound = 0) const {
-    char text[320];
-    std::snprintf(text, sizeof text, "%s,%s,%s,%s,%.4g,%.4g,%s", problem, method.c_str(), scalar,
-                  setting.c_str(), ns, error, reference);
-    out.row(text, "error", error);
-    if (bound > 0)
-      out.require_below(std::string(problem) + " " + method + " " + scalar + " " + setting, error, bound);
-  }
-};
 
 // ---- the law's inverse
 // -----------------------------------------------------------------------------------------------
@@ -423,5 +409,6 @@ int main(int argc, char** argv) {
   const Table table{out, out.quick ? 20 : 200};
   all<double>(table, out.quick);
   all<float>(table, out.quick);
+  elastic_contact(table, out.quick);
   return out.failures == 0 ? 0 : 1;
 }
