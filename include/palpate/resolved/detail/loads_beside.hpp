@@ -10,6 +10,7 @@
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/resolved/detail/vector_list.hpp>
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -60,16 +61,25 @@ class LoadsBeside {
                            P_[i]);
     }
   }
-  /// They move the points, which then need not be pressed as deep.
+  /// They move the points, which then need not be pressed as deep, or must be pressed deeper where the
+  /// surface bulges. Of a bulge that is higher than the tool is deep a part counts: touching points are found
+  /// beneath the undeformed surface alone, and a tool that lifts off would lose its force as the root of its
+  /// depth.
   template <class RegularPart>
   void give_way(PointSystem& system, RegularPart& regular) noexcept {
     if (size_ == 0) return;
     if constexpr (RegularPart::active) regular.gather_beside();
+    float bulge = 0;
     for (std::size_t i = 0; i < system.size(); ++i) {
       Vec3<float> u = displacement_at(system.foot(i), system.direction(i));
       if constexpr (RegularPart::active) u += regular.beside(i);
       given_.set(i, u);
-      system.depth[i] -= system.direction(i).dot(u);
+      bulge = (std::max)(bulge, -system.direction(i).dot(u));
+    }
+    const float share = bulge > system.deepest() ? system.deepest() / bulge : 1.f;
+    for (std::size_t i = 0; i < system.size(); ++i) {
+      const float sunk = system.direction(i).dot(given_[i]);
+      system.depth[i] -= sunk < 0 ? share * sunk : sunk;
     }
   }
   /// Displacement of point i of the tick by them [m].

@@ -44,6 +44,7 @@ class PointSystem {
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
+  [[nodiscard]] float deepest() const noexcept { return deepest_; }  ///< of what was given to touch() [m]
   void clear() noexcept {
     size_ = groups_ = 0;
     deepest_ = volume_ = 0;
