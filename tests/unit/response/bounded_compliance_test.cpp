@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <palpate/response/tick/bounded_compliance.hpp>
+#include <palpate/response/tick/stages.hpp>
 
 #include "support/check.hpp"
 
@@ -73,6 +74,11 @@ TEST_CASE("bounded compliance: to the bit what it was where nothing is too small
   Mat3<double> none = Mat3<double>::Constant(std::numeric_limits<double>::quiet_NaN());
   detail::bound_below(none, 1.0);  // ends
   CHECK(!(none(0, 0) == none(0, 0)));
+}
+
+TEST_CASE("the size of two displacements is the sum of their sizes, whatever their signs") {
+  for (const double dipole : {3.0, -3.0})
+    CHECK(detail::size_of_both(2, dipole, 4, Vec3<double>(0, -3, 4)) == 26);
 }
 
 TEST_CASE("smooth limit: its series and its roots agree with the power to the last digit") {

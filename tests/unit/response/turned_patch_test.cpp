@@ -2,6 +2,7 @@
 
 // A patch that the tool tilts and twists: its torque, where it goes, what it does to others.
 
+#include <palpate/elasticity/point_load.hpp>
 #include <palpate/response/response_contact.hpp>
 
 #include "reference/rotated_truth.hpp"
@@ -51,6 +52,37 @@ TEST_CASE("a small patch: the half-space's moments of tilt and of twist") {
     CHECK(tilt.head<2>().norm() < 1e-3 * tilt.z());
     CHECK(V(twist.x(), 0, twist.z()).norm() < 1e-3 * twist.y());
   }
+}
+
+TEST_CASE("five radii from a small patch that tilts freely: the half-space's field of a couple") {
+  // Two forces along the normal, half a millimetre apart: to (0.25 / 5)^2. Compressible, for at nu = 1/2 a
+  // couple moves nothing along the surface; held in place a patch that tilts pulls sideways, too.
+  const double a = 0.001, angle = 0.01, nu = 0.2, apart = 0.00025;
+  const ResponseField field = test::block_field(V(0.08, 0.05, 0.06), 1e6, nu, 150);
+  const double way = 1e-6, held = solved(field, on_top(0, a, V::Zero(), V(0, 0, angle)), false).force.x(),
+               moved = solved(field, on_top(0, a, V(way, 0, 0), V::Zero()), false).force.x();
+  const Contact contact = on_top(0, a, V(-held / moved * way, 0, 0), V(0, 0, angle));
+  ResponseTick<1> tick(field, {.second_order = false});
+  V force, torque;
+  tick.solve(&contact, 1, &force, &torque);
+  std::vector<V> points;
+  for (int i = 0; i < 8; ++i)
+    points.push_back(contact.position + 5 * a * V(std::cos(0.7 * i), 0, std::sin(0.7 * i)));
+  std::vector<double> u(3 * points.size());
+  tick.displace(ResponseDisplay(field, points), u.data(), 3);
+  // The side at +x goes up.
+  const V up(0, torque.z() / (2 * apart) / (4 * std::numbers::pi * field.shear_modulus()), 0);
+  double error = 0, largest = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const V r = points[i] - contact.position, side(apart, 0, 0),
+            exact = point_load<double>(r - side, -V::UnitY(), up, nu) -
+                    point_load<double>(r + side, -V::UnitY(), up, nu);
+    error = (std::max)(error, (V(u[3 * i], u[3 * i + 1], u[3 * i + 2]) - exact).norm());
+    largest = (std::max)(largest, exact.norm());
+  }
+  MESSAGE("off by ", error / largest, " of the largest");
+  // The patch's width, (1 / 5)^2, and the body's own part, the square of distance over size, (1 / 10)^2.
+  CHECK(error < 0.05 * largest);
 }
 
 TEST_CASE("the patch goes with the tool: displacement and rotation, exactly") {

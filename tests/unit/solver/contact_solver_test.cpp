@@ -148,6 +148,16 @@ TEST_CASE("a rate-dependent law uses dt, and only dt that makes sense") {
   }
 }
 
+TEST_CASE("a tool that flies in: the rate is no larger than takes it to its depth in one tick") {
+  const DampedForce<DuffingForce<double>> damped(law, {.damping = 1.0});
+  ContactSolver<Box<double>, DampedForce<DuffingForce<double>>, Frictionless<double>,
+                SingleRegion<AreaSharing>>
+      solver({.object = block, .tool = face(1, 1e-3, 1e-6), .force = damped});
+  (void)solver.tick(at(0, 0.025, 0), 1e-3);
+  const auto met = solver.tick(at(0, 0.0195, 0), 1e-3);  // 5.5 m/s, of 5.5 mm the last half into the body
+  CHECK_RELATIVE(met.wrench.force.y(), damped.force(5e-4, 0.5), 1e-12);
+}
+
 TEST_CASE("force at the mass centre: the paper's form has no torque") {
   ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<AreaSharing>,
                 NoDeformation<double>, AtMassCentre>

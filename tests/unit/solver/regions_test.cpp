@@ -9,6 +9,7 @@
 #include <support/paths.hpp>
 #include "unit/solver/scene.hpp"
 
+#include <cmath>
 #include <random>
 
 using namespace palpate;
@@ -148,6 +149,54 @@ TEST_CASE("regions that split and merge keep the tangential force") {
   // One tick moves 2 um: the friction may change by the law's stiffness times that, and by mu times the
   // normal change.
   CHECK(largest <= 2 * law.stiffness(2e-3) * 2.7e-6);
+}
+
+TEST_CASE("feet that slide, pressed until they are one region, slide on below the static limit") {
+  std::vector<V> points;
+  for (int i = -10; i <= 10; ++i) points.emplace_back(5e-4 * i, std::abs(i) > 4 ? 0 : 2e-4, 0);
+  ContactSolver<Box<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4, AreaSharing>> solver(
+      {.object = block,
+       .tool = ToolPoints<double>(points, std::vector<double>(points.size(), 2.5e-7), {.contact_area = 2e-6}),
+       .force = law,
+       .friction = dry,
+       .contacts = {.distance = 6e-4}});
+  double x = 0, y = 0.02, most = 0;
+  const auto move = [&](double to_x, double to_y) {
+    const int steps = static_cast<int>(std::round(std::hypot(to_x - x, to_y - y) / 2e-6));
+    const double from_x = x, from_y = y;
+    for (int i = 1; i <= steps; ++i) {
+      x = from_x + (to_x - from_x) * i / steps, y = from_y + (to_y - from_y) * i / steps;
+      solver.tick(at(x, y, 0));
+      V friction = V::Zero();
+      double pressed = 0;
+      for (const auto& c : solver.contacts()) friction += c.friction, pressed += c.normal_force;
+      most = (std::max)(most, friction.norm() / pressed);
+    }
+  };
+  move(0, 0.01985);  // the bridge is 0.05 mm above
+  move(3e-3, 0.01985);
+  CHECK(solver.contacts().size() == 2);
+  CHECK(most > 0.45);  // broken away at 0.5
+  most = 0;
+  move(3e-3, 0.0196);
+  CHECK(solver.contacts().size() == 1);
+  move(6e-3, 0.0196);
+  CHECK(most <= 0.3 * (1 + 1e-9));
+  CHECK(most >= 0.3 * (1 - 1e-3));
+}
+
+TEST_CASE("torque is about the mass centre, that of friction too") {
+  // A level face: its forces act as one at the contact's centre.
+  ContactSolver<Box<double>, DuffingForce<double>, CoulombFriction<double>, SingleRegion<AreaSharing>> solver(
+      {.object = block, .tool = face(5, 1e-3, 2.5e-5), .force = law, .friction = dry});
+  Wrench<double> wrench{};
+  double x = 0;
+  for (; x < 3e-3; x += 1e-5) wrench = solver.tick(at(x, 0.0195, 0)).wrench;
+  const auto& contact = solver.contacts()[0];
+  CHECK(contact.friction.norm() > 0.29 * contact.normal_force);
+  const V arm = contact.centre - (solver.tool().centre_of_mass() + V(x - 1e-5, 0.0195, 0));
+  CHECK_ABSOLUTE((wrench.torque - arm.cross(contact.force)).norm(), 0,
+                 ulps<double>(64) * contact.force.norm() * 0.05);
 }
 
 TEST_CASE("float follows double") {
