@@ -166,7 +166,7 @@ TEST_CASE("feet that slide, pressed until they are one region, slide on below th
     const double from_x = x, from_y = y;
     for (int i = 1; i <= steps; ++i) {
       x = from_x + (to_x - from_x) * i / steps, y = from_y + (to_y - from_y) * i / steps;
-      solver.tick(at(x, y, 0));
+      (void)solver.tick(at(x, y, 0));
       V friction = V::Zero();
       double pressed = 0;
       for (const auto& c : solver.contacts()) friction += c.friction, pressed += c.normal_force;
