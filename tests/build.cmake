@@ -81,17 +81,28 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 
 # Two objects of one program, each with every header, that both set up and use a response field: header-only,
-# and the field alone against the compiled set-up.
-add_executable(palpate_test_odr odr/first.cpp odr/second.cpp)
-target_link_libraries(palpate_test_odr PRIVATE Threads::Threads)
-add_executable(palpate_test_odr_compiled odr/first_field.cpp odr/second_field.cpp)
-target_link_libraries(palpate_test_odr_compiled PRIVATE palpate::compiled_response)
-foreach(program odr odr_compiled)
-  palpate_own_target(palpate_test_${program})
-  target_include_directories(palpate_test_${program} PRIVATE ${generated} ${CMAKE_CURRENT_SOURCE_DIR})
-  target_compile_options(palpate_test_${program} PRIVATE -O0)
+# and the field alone against the compiled set-up. What matters is that there are two: the second is a copy of
+# the first, and costs nothing to compile.
+function(palpate_two_objects program source)  # and what they link
+  add_library(palpate_test_${program}_object OBJECT odr/${source}.cpp)
+  set(second ${CMAKE_CURRENT_BINARY_DIR}/${program}_second${CMAKE_CXX_OUTPUT_EXTENSION})
+  add_custom_command(OUTPUT ${second} DEPENDS palpate_test_${program}_object
+    $<TARGET_OBJECTS:palpate_test_${program}_object>
+    COMMAND ${CMAKE_COMMAND} -E copy $<TARGET_OBJECTS:palpate_test_${program}_object> ${second})
+  set_source_files_properties(${second} PROPERTIES EXTERNAL_OBJECT ON GENERATED ON)
+  add_executable(palpate_test_${program} odr/main.cpp ${second}
+    $<TARGET_OBJECTS:palpate_test_${program}_object>)
+  target_link_libraries(palpate_test_${program} PRIVATE ${ARGN})
+  target_link_libraries(palpate_test_${program}_object PRIVATE ${ARGN})
+  foreach(target palpate_test_${program} palpate_test_${program}_object)
+    palpate_own_target(${target})
+  endforeach()
+  target_include_directories(palpate_test_${program}_object PRIVATE ${generated} ${CMAKE_CURRENT_SOURCE_DIR})
+  target_compile_options(palpate_test_${program}_object PRIVATE -O0)
   add_test(NAME ${program} COMMAND palpate_test_${program})
-endforeach()
+endfunction()
+palpate_two_objects(odr all Threads::Threads)
+palpate_two_objects(odr_compiled field palpate::compiled_response)
 
 # An engine: no exceptions, no RTTI, fast-math, and a palpate_config.hpp of its own.
 add_executable(palpate_test_host host/main.cpp)

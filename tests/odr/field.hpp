@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  The response field's set-up and tick, for programs of two objects.
+/// @file The response field's set-up and tick, for programs of two objects.
 
 #include <palpate/response/response_contact.hpp>
 #include <palpate/response/save.hpp>
@@ -13,7 +13,7 @@
 /// Set-up and tick of a small body, and its bytes, as one object sees them.
 static std::vector<std::byte> field_here() {
   using palpate::Vec3;
-  const palpate::ResponseField field = palpate::test::ellipsoid_field(0.45, 60);
+  const palpate::ResponseField field = palpate::test::ellipsoid_field(0.45, 24);
   palpate::ResponseTick<1> tick(field);
   const palpate::ResponseContact<double> contact{Vec3<double>(0, 0.04, 0), Vec3<double>::UnitY(), 0.01,
                                                  Vec3<double>(0, -0.001, 0)};
@@ -24,4 +24,3 @@ static std::vector<std::byte> field_here() {
   bytes.insert(bytes.end(), at, at + sizeof(force));
   return bytes;
 }
-std::vector<std::byte> field_of_second();
