@@ -27,8 +27,7 @@ Ball middle(const Ball& l, const Ball& r) {
 
 void roll_over(const test::ResponseBody& body) {
   const TriangleBvh<double> tree(body.mesh);
-  const ResponseField field(body.mesh, [&](const V& p) { return p.y() <= body.fixed_below; },
-                            {.E = 1e5, .nu = body.nu, .mesh = {.vertices = 200}});
+  const ResponseField& field = test::body_field(body);
   const ResponseDisplay display(field, field.mesh().vertices);
   ResponseTick<1> tick(field);
   std::vector<double> u(3 * display.size()), before(u), left(u), right(u);

@@ -25,11 +25,7 @@ void try_body(const test::ResponseBody& body, double convergence) {
   V low = body.mesh.vertices[0], high = low;
   for (const V& p : body.mesh.vertices) low = low.cwiseMin(p), high = high.cwiseMax(p);
   const double size = (high - low).norm();
-  const auto make = [&](double vertices) {
-    return ResponseField(body.mesh, [&](const V& p) { return p.y() <= body.fixed_below; },
-                         {.E = 1e5, .nu = body.nu, .mesh = {.vertices = vertices}});
-  };
-  const ResponseField field = make(200), fine = make(400);
+  const ResponseField &field = test::body_field(body), fine = test::body_field(body, 400);
   const double h = field.mesh().length, mu = field.shear_modulus();
   std::vector<V> points;
   std::mt19937 random(7);

@@ -4,9 +4,13 @@
 /// @file Bodies that no closed form knows, for the response field: concave, thin, in two pieces, with edges.
 /// About 100 mm.
 
+#include <palpate/response/response_field.hpp>
+
 #include "support/joined.hpp"
 #include "support/response_meshes.hpp"
 
+#include <map>
+#include <string>
 #include <vector>
 
 namespace palpate::test {
@@ -92,6 +96,18 @@ struct ResponseBody {
           {"box", cells_mesh({8, 8, 8}, 0.0125, block), 1e-6, 0.3},
           {"bowl", cells_mesh({8, 8, 8}, 0.0125, bowl), 1e-6, 0.45},
           {"block with a hole", cells_mesh({7, 9, 4}, 0.0125, hole), 1e-6, 0.45}};
+}
+
+/// Of 100 kPa, with about so many vertices of the boundary element mesh.
+[[nodiscard]] inline ResponseField body_field(const ResponseBody& body, double vertices) {
+  return ResponseField(body.mesh, [&](const Vec3<double>& p) { return p.y() <= body.fixed_below; },
+                       {.E = 1e5, .nu = body.nu, .mesh = {.vertices = vertices}});
+}
+/// The field of 200 vertices, set up once for all tests of a program.
+[[nodiscard]] inline const ResponseField& body_field(const ResponseBody& body) {
+  static std::map<std::string, ResponseField> made;
+  const auto at = made.find(body.name);
+  return at != made.end() ? at->second : made.emplace(body.name, body_field(body, 200)).first->second;
 }
 
 }  // namespace palpate::test
