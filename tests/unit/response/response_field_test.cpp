@@ -266,6 +266,44 @@ TEST_CASE("saved and loaded: the same bits; bytes that are not a saved field are
     sign();
     CHECK(refused(changed, "length is out of range"));
   }
+  // Numbers of nodes and tables, likewise: the lists are as long as they say, one after the other.
+  constexpr std::size_t node = 8 * sizeof(double) + 6 * 4;
+  const std::size_t item[] = {8,
+                              12,
+                              1,
+                              1,
+                              node,
+                              12,
+                              4,
+                              sizeof(LoadMesh::Share),
+                              sizeof(PatchTable::Own),
+                              sizeof(PatchTable::Second),
+                              sizeof(PatchTable::Moments)};
+  std::size_t at = 32 + 24;
+  for (const std::size_t size : item) {
+    std::uint64_t count = 0;
+    std::memcpy(&count, bytes.data() + at, 8);
+    REQUIRE(count > 0);
+    if (size == node) {
+      for (const double x : {1e20, HUGE_VAL}) {
+        changed = bytes;
+        std::memcpy(changed.data() + at + 8, &x, 8);  // a normal
+        sign();
+        CHECK(refused(changed, "not a triangle's"));
+      }
+    } else if (size == sizeof(PatchTable::Own) || size == sizeof(PatchTable::Second) ||
+               size == sizeof(PatchTable::Moments)) {
+      for (const float x : {1e38f, HUGE_VALF, std::nanf("")}) {
+        for (const std::size_t within : {std::size_t{0}, size - 4}) {  // of moments the first and sagittas
+          changed = bytes;
+          std::memcpy(changed.data() + at + 8 + within, &x, 4);
+          sign();
+          CHECK(refused(changed, "a table is not finite"));
+        }
+      }
+    }
+    at += 8 + static_cast<std::size_t>(count) * size;
+  }
   // The influence functions come last. Numbers that no body has would leave float's range in a tick's sums.
   for (const float c : {0x1p64f, -0x1p64f, 3e38f, HUGE_VALF, std::nanf("")}) {
     changed = bytes;

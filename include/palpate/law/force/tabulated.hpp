@@ -84,19 +84,19 @@ class TabulatedForce {
   [[nodiscard]] S force(S depth) const noexcept {
     if (!is_positive(depth)) return S(0);
     const Piece& p = piece_at(depth);
-    return p.force + p.rise(depth - p.depth);
+    return p.force + p.rise(p.from(depth));
   }
   /// dF/dD [N/m] at depth D [m].
   [[nodiscard]] S stiffness(S depth) const noexcept {
     if (!is_positive(depth)) return S(0);
     const Piece& p = piece_at(depth);
-    return p.slope_at(depth - p.depth);
+    return p.slope_at(p.from(depth));
   }
   /// Integral of F from 0 to D [J].
   [[nodiscard]] S energy(S depth) const noexcept {
     if (!is_positive(depth)) return S(0);
     const Piece& p = piece_at(depth);
-    return p.energy_at(depth - p.depth);
+    return p.energy_at(p.from(depth));
   }
   /// D [m] at the force F [N].
   [[nodiscard]] S depth(S force) const noexcept {
@@ -131,6 +131,8 @@ class TabulatedForce {
     S slope, quadratic, cubic;  // F = force + t (slope + t (quadratic + t cubic))
     S energy;                   // at its beginning
 
+    // Infinity times the last piece's coefficients of 0 would be NaN.
+    S from(S D) const noexcept { return (std::min)(D, (std::numeric_limits<S>::max)()) - depth; }
     S rise(S t) const noexcept { return t * (slope + t * (quadratic + t * cubic)); }
     S slope_at(S t) const noexcept { return slope + t * (S(2) * quadratic + t * (S(3) * cubic)); }
     S energy_at(S t) const noexcept {

@@ -191,6 +191,9 @@ PALPATE_COMPILED_INLINE ResponseField load_response_field(std::span<const std::b
   const auto require = [where](bool holds, const char* rule) {
     if (!holds) fail(where, rule);
   };
+  // Of a body of 1e-6 m numbers in 1/m^2 reach 1e17; what is larger by far leaves float's range in a sum.
+  const auto is_moderate = [](double e) { return is_within(e, 0x1p60); };
+  const char* too_large = "a table is not finite, or too large";
   const std::size_t n = vertices.size() / 3, k = nodes.size();
   require(in.at_end() && vertices.size() == 3 * n && n >= 4 && k >= 1 && !parts.triangles.empty(),
           "the lists' lengths are not a field's");
@@ -225,7 +228,7 @@ PALPATE_COMPILED_INLINE ResponseField load_response_field(std::span<const std::b
     const auto& begin = rows->begin;
     fits = fits && !begin.empty() && begin.front() == 0 && begin.back() == rows->weights.size() &&
            std::is_sorted(begin.begin(), begin.end());
-    for (const auto& w : rows->weights) fits = fits && w.vertex < n && is_finite(w.weight);
+    for (const auto& w : rows->weights) fits = fits && w.vertex < n && is_moderate(w.weight);
   }
   fits = fits && parts.vertex_rows.size() == n;
   for (const auto& t : parts.edges)
@@ -237,7 +240,7 @@ PALPATE_COMPILED_INLINE ResponseField load_response_field(std::span<const std::b
     for (auto v : t) require(v < k, "a triangle's corner is not a node");
   for (std::size_t v = 0; v < n; ++v) {
     parts.mesh.vertices.push_back({vertices[3 * v], vertices[3 * v + 1], vertices[3 * v + 2]});
-    require(is_finite(parts.mesh.vertices.back()), "a vertex is not finite");
+    require(is_moderate(parts.mesh.vertices.back().norm()), "a vertex is not finite, or too far away");
   }
   for (const auto& s : nodes) {
     const LoadNode node{{s.normal[0], s.normal[1], s.normal[2]},
@@ -247,8 +250,9 @@ PALPATE_COMPILED_INLINE ResponseField load_response_field(std::span<const std::b
                         s.triangle,
                         {s.part[0], s.part[1], s.part[2]},
                         s.crease != 0};
-    require(s.triangle < parts.mesh.triangles.size() && is_finite(node.normal) && is_finite(node.source) &&
-                is_finite(s.size) && is_finite(s.spacing) && is_finite(node.part.sum()),
+    require(s.triangle < parts.mesh.triangles.size() && is_moderate(node.normal.norm()) &&
+                is_moderate(node.source.norm()) && is_moderate(s.size) && is_moderate(s.spacing) &&
+                is_moderate(node.part.norm()),
             "a node is not a triangle's");
     parts.nodes.push_back(node);
   }
@@ -259,15 +263,15 @@ PALPATE_COMPILED_INLINE ResponseField load_response_field(std::span<const std::b
   require((beyond & 0x80000000u) == 0, "an influence function is not finite, or too large");
   for (const auto& row : parts.own)
     for (const auto& pair : row.pair)
-      for (float e : pair) require(is_finite(e), "a table is not finite");
+      for (float e : pair) require(is_moderate(e), too_large);
   for (const auto& row : parts.second)
-    for (float e : row.mean) require(is_finite(e), "a table is not finite");
+    for (float e : row.mean) require(is_moderate(e), too_large);
   for (const auto& row : parts.moments) {
-    bool good = is_finite(row.sagitta) && is_finite(row.mean_sagitta);
+    bool good = is_moderate(row.sagitta) && is_moderate(row.mean_sagitta);
     for (const auto& mean : row.mean)
-      for (float e : mean) good = good && is_finite(e);
-    for (float e : row.own) good = good && is_finite(e);
-    require(good, "a table is not finite");
+      for (float e : mean) good = good && is_moderate(e);
+    for (float e : row.own) good = good && is_within(e, 0x1p90f);  // 1/m^3
+    require(good, too_large);
   }
   return ResponseField(std::move(parts));
 }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -90,6 +91,12 @@ TEST_CASE("tabulated: a straight line and two samples are straight") {
     CHECK_RELATIVE(a.energy(d), d * d, ulps<double>(8));
     CHECK_RELATIVE(b.force(d), 2 * d, ulps<double>(1));
     CHECK_RELATIVE(b.depth(2 * d), d, ulps<double>(1));
+  }
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  for (const double d : {1e308, infinite}) {
+    CHECK(a.force(d) == infinite);
+    CHECK(a.energy(d) == infinite);
+    CHECK_RELATIVE(a.stiffness(d), 2, ulps<double>(8));
   }
 }
 
