@@ -51,7 +51,8 @@ class Cylinder {
       return detail::nowhere<S>(p_.centre + Vec3<S>(p_.radius, S(0), S(0)), Vec3<S>::UnitX());
     const Vec3<S> out = outward(r);
     const S R = p_.radius, h = p_.half_height, side = r.y() < S(0) ? S(-1) : S(1);
-    const S rho = radial(r), over = rho - R, above = std::abs(r.y()) - h;
+    const S rho = (std::min)(radial(r), (std::numeric_limits<S>::max)()), over = rho - R,
+            above = std::abs(r.y()) - h;
     if (over <= S(0) && above <= S(0)) {
       if (over >= above) return {p_.centre + R * out + Vec3<S>(S(0), r.y(), S(0)), out, over};
       return {p_.centre + Vec3<S>(r.x(), side * h, r.z()), Vec3<S>(S(0), side, S(0)), above};

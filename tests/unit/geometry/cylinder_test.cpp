@@ -4,6 +4,8 @@
 
 #include <palpate/geometry/cylinder.hpp>
 
+#include <cmath>
+#include <limits>
 #include <string>
 
 using namespace palpate;
@@ -63,6 +65,17 @@ TEST_CASE_TEMPLATE("cylinder: a ray beside the axis meets the side where Pythago
   CHECK_ABSOLUTE((in.position - Vec3<S>(-4, 0, 3)).norm(), 0, test::ulps<S>(8) * 10);
   CHECK_ABSOLUTE(out.t, 4.0L, test::ulps<S>(8) * 10);
   CHECK(!body.raycast(Vec3<S>(-10, 0, S(5.001)), Vec3<S>(1, 0, 0)).hit);
+}
+
+TEST_CASE_TEMPLATE("cylinder: the closest point to the corner of all numbers is on the rim", S, float,
+                   double) {
+  constexpr S most = (std::numeric_limits<S>::max)();
+  const Cylinder<S> body({.radius = S(2), .half_height = S(1)});
+  const SurfacePoint<S> at = body.closest(Vec3<S>(most, most, most));
+  CHECK_ABSOLUTE((at.position - Vec3<S>(std::sqrt(S(2)), 1, std::sqrt(S(2)))).norm(), 0, test::ulps<S>(16));
+  CHECK(at.distance == most);
+  CHECK_ABSOLUTE(at.normal.norm(), 1, test::ulps<S>(8));
+  CHECK(at.normal.minCoeff() > S(0.49));  // across is out of range: not 1/sqrt(3) each
 }
 
 TEST_CASE("cylinder: bad parameters are refused by name and value") {

@@ -69,8 +69,8 @@ class HertzForce {
     if (p_.compliance < S(0)) {
       const Split end = at(series_depth());
       if (force > end.force) {
-        const S over = std::cbrt(force / end.force);
-        return end.depth * over * over;
+        const S root = std::cbrt(force / (p_.k * end.own * std::sqrt(end.own)));
+        return root * root;
       }
     }
     const S root = std::cbrt(force / p_.k);
@@ -99,8 +99,8 @@ class HertzForce {
       const S ev = e * v, f = v * v * (S(1) + ev) - S(1), f1 = v * (S(2) + S(3) * ev), f2 = S(2) + S(6) * ev;
       v -= S(2) * f * f1 / (S(2) * f1 * f1 - f * f2);
     }
-    const S force = p_.k * root * d * (v * v * v), over = depth / d;
-    return {depth > d ? force * over * std::sqrt(over) : force, d, force, v * v};
+    const S stiff = p_.k * (v * v * v), force = stiff * root * d;
+    return {depth > d ? stiff * depth * std::sqrt(depth) : force, d, force, v * v};
   }
   // Where the series ends: e = -0.3, chosen before the fold at e = -0.385, -2/(3 sqrt(3)).
   [[nodiscard]] S series_depth() const noexcept {
