@@ -99,8 +99,8 @@ class HertzForce {
       const S ev = e * v, f = v * v * (S(1) + ev) - S(1), f1 = v * (S(2) + S(3) * ev), f2 = S(2) + S(6) * ev;
       v -= S(2) * f * f1 / (S(2) * f1 * f1 - f * f2);
     }
-    const S stiff = p_.k * (v * v * v), force = stiff * root * d;
-    return {depth > d ? stiff * depth * std::sqrt(depth) : force, d, force, v * v};
+    const S cube = v * v * v, force = p_.k * root * d * cube;
+    return {depth > d ? p_.k * std::sqrt(depth) * depth * cube : force, d, force, v * v};
   }
   // Where the series ends: e = -0.3, chosen before the fold at e = -0.385, -2/(3 sqrt(3)).
   [[nodiscard]] S series_depth() const noexcept {

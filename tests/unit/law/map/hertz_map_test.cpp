@@ -108,6 +108,9 @@ TEST_CASE("bad nodes are refused") {
   CHECK_THROWS_AS(HertzForce<float>({.k = 6.8e22f, .compliance = 3e38f}), SetupError);
   const HertzForce<float> soft({.k = 1e-10f, .compliance = 1e28f});
   for (const float D : {1e-3f, 1.f, 1e6f}) CHECK_RELATIVE(soft.force(D), D / 1e28f, 1e-6);
+  constexpr float infinite = std::numeric_limits<float>::infinity();
+  CHECK(soft.force(infinite) == infinite);
+  CHECK(HertzForce<float>({.k = 6e-39f, .compliance = 2e31f}).force(infinite) == infinite);
   const HertzForce<float> steep({.k = 1e-10f, .compliance = -1e28f});  // at 9e-38
   for (const float D : {1e-18f, 1.f, 1e24f}) {
     const float right = 2.0556f * 1e-10f * D * std::sqrt(D);  // v^3 where v^2 - 0.3 v^3 = 1
