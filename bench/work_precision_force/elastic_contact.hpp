@@ -144,8 +144,8 @@ inline void elastic_contact(const Table& table, bool quick) {
     ball.torque.push_back(0);
   }
   const TriangleMesh<double> sphere(Sphere<double>({.radius = R}).mesh(4000));
-  const auto pole = [&](double spacing) {
-    const auto all = contact_samples(sphere, spacing);
+  const auto pole = [&](double apart) {
+    const auto all = contact_samples(sphere, apart);
     SurfaceSamples<double> near;
     for (std::size_t i = 0; i < all.points.size(); ++i) {
       if (all.points[i].y() > -R + 2e-3) continue;
@@ -167,8 +167,8 @@ inline void elastic_contact(const Table& table, bool quick) {
   // So stiff that the force is right 1 mm deep: pi R d^2 times the stiffness.
   springs(ball, "springs under each point", pole(5e-4),
           test::rigid_sphere_force(R, 1e-3, E_plane) / (pi * R * 1e-6));
-  for (const double spacing : {2.4e-3, 1.6e-3, 1.1e-3, 8e-4, 6e-4})
-    if (!quick || spacing > 1e-3) resolved(ball, pole(spacing), spacing < 1.5e-3 ? 0.01 : 0);
+  for (const double apart : {2.4e-3, 1.6e-3, 1.1e-3, 8e-4, 6e-4})
+    if (!quick || apart > 1e-3) resolved(ball, pole(apart), apart < 1.5e-3 ? 0.01 : 0);
 
   // A blade's face, 30 x 3 mm, pressed and tilted as far as it stays in contact. Limits of fine lattices, as in
   // tests/unit/resolved/half_space_test.cpp.
@@ -184,8 +184,8 @@ inline void elastic_contact(const Table& table, bool quick) {
     blade.torque.push_back(-2.050 * E_plane * std::pow(area, 1.5) * tilt);
   }
   const TriangleMesh<double> box(Box<double>({.half = V(length / 2, 0.004, width / 2)}).mesh(24));
-  const auto face = [&](double spacing) {
-    const auto all = contact_samples(box, spacing);
+  const auto face = [&](double apart) {
+    const auto all = contact_samples(box, apart);
     SurfaceSamples<double> low;
     for (std::size_t i = 0; i < all.points.size(); ++i) {
       if (all.points[i].y() > -0.004 + 1e-6) continue;
@@ -197,8 +197,8 @@ inline void elastic_contact(const Table& table, bool quick) {
   };
   springs(blade, "palpate by area as a disc", face(1e-3), 2 * E_plane / std::sqrt(pi * area));
   springs(blade, "springs under each point", face(1e-3), 1.4916 * E_plane / std::sqrt(area));
-  for (const double spacing : {width, width / 1.6, width / 2.6, width / 3.6})
-    if (!quick || spacing > 1e-3) resolved(blade, face(spacing), spacing < width ? 0.05 : 0);
+  for (const double apart : {width, width / 1.6, width / 2.6, width / 3.6})
+    if (!quick || apart > 1e-3) resolved(blade, face(apart), apart < width ? 0.05 : 0);
 }
 
 }  // namespace bench
