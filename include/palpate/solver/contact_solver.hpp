@@ -172,7 +172,7 @@ class ContactSolver {
   /// Before any contact. Takes heap where the topology clusters.
   [[nodiscard]] State initial_state() const { return State(collector_.initial_state()); }
   [[nodiscard]] const State& state() const noexcept { return state_; }
-  void set_beside(std::span<const SurfaceLoad<S>> loads) noexcept { state_.set_beside(loads); }
+  void set_beside(const auto& loads) noexcept { state_.set_beside(loads); }
   /// The next tick goes on from `state`, one of this solver's.
   void restore(const State& state) noexcept { state_ = state; }
 
