@@ -23,6 +23,7 @@
 
 #include <cstdio>
 #include <memory>
+#include <span>
 
 using namespace bench;
 
@@ -211,7 +212,7 @@ void judge(const std::string& name, const ContactCase& c, const Object& object,
       for (std::size_t t = 0; t < tools.size(); ++t) {
         const Pose p = between(c.poses[k - 1][t], c.poses[k][t], (std::min)(i, 100) / 100.);
         const Loads beside = loads_without(t);
-        tools[t].set_beside({beside.begin(), beside.size()});
+        tools[t].set_beside(std::span(beside.begin(), beside.size()));
         const auto felt = tools[t].tick({p.rotation.toRotationMatrix(), mm * p.origin}, 1e-3);
         force -= felt.wrench.force;
         torque -=
