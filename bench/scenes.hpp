@@ -36,6 +36,18 @@ PowerLawFriction<S, Slip, Skew> fibre() {
   return PowerLawFriction<S, Slip, Skew>({.K = S(0.562), .beta = S(0.75), .mu_dynamic = S(0.3)});
 }
 
+/// Those of a tool's points that are no higher than `highest` [m].
+inline SurfaceSamples<double> points_up_to(double highest, const SurfaceSamples<double>& all) {
+  SurfaceSamples<double> low;
+  for (std::size_t i = 0; i < all.points.size(); ++i) {
+    if (all.points[i].y() > highest) continue;
+    low.points.push_back(all.points[i]);
+    low.areas.push_back(all.areas[i]);
+    low.vector_areas.push_back(all.vector_areas[i]);
+  }
+  return low;
+}
+
 inline constexpr double spacing = 0.3e-3;  ///< of a tool's points [m]
 inline constexpr double joining = 0.5e-3;  ///< threshold r of the regions [m]
 

@@ -36,15 +36,8 @@ constexpr double R = 0.015, depth = 1e-3, top = 0.05, E = 1e6, nu = 0.5;
 const double exact_force = test::rigid_sphere_force(R, depth, E / (1 - nu * nu));
 
 SurfaceSamples<double> pole(double spacing) {
-  const auto all = contact_samples(TriangleMesh<double>(Sphere<double>({.radius = R}).mesh(4000)), spacing);
-  SurfaceSamples<double> near;
-  for (std::size_t i = 0; i < all.points.size(); ++i) {
-    if (all.points[i].y() > -R + 2 * depth) continue;
-    near.points.push_back(all.points[i]);
-    near.areas.push_back(all.areas[i]);
-    near.vector_areas.push_back(all.vector_areas[i]);
-  }
-  return near;
+  const TriangleMesh<double> ball(Sphere<double>({.radius = R}).mesh(4000));
+  return points_up_to(-R + 2 * depth, contact_samples(ball, spacing));
 }
 
 /// Points near the poles of four balls.

@@ -144,17 +144,7 @@ inline void elastic_contact(const Table& table, bool quick) {
     ball.torque.push_back(0);
   }
   const TriangleMesh<double> sphere(Sphere<double>({.radius = R}).mesh(4000));
-  const auto pole = [&](double apart) {
-    const auto all = contact_samples(sphere, apart);
-    SurfaceSamples<double> near;
-    for (std::size_t i = 0; i < all.points.size(); ++i) {
-      if (all.points[i].y() > -R + 2e-3) continue;
-      near.points.push_back(all.points[i]);
-      near.areas.push_back(all.areas[i]);
-      near.vector_areas.push_back(all.vector_areas[i]);
-    }
-    return near;
-  };
+  const auto pole = [&](double apart) { return points_up_to(-R + 2e-3, contact_samples(sphere, apart)); };
   {
     ContactSolver<Box<double>, HertzForce<double>> point(
         {.object = below, .tool = {}, .force = HertzForce<double>({.k = 4. / 3 * E_plane * std::sqrt(R)})});
@@ -184,17 +174,7 @@ inline void elastic_contact(const Table& table, bool quick) {
     blade.torque.push_back(-2.050 * E_plane * std::pow(area, 1.5) * tilt);
   }
   const TriangleMesh<double> box(Box<double>({.half = V(length / 2, 0.004, width / 2)}).mesh(24));
-  const auto face = [&](double apart) {
-    const auto all = contact_samples(box, apart);
-    SurfaceSamples<double> low;
-    for (std::size_t i = 0; i < all.points.size(); ++i) {
-      if (all.points[i].y() > -0.004 + 1e-6) continue;
-      low.points.push_back(all.points[i]);
-      low.areas.push_back(all.areas[i]);
-      low.vector_areas.push_back(all.vector_areas[i]);
-    }
-    return low;
-  };
+  const auto face = [&](double apart) { return points_up_to(-0.004 + 1e-6, contact_samples(box, apart)); };
   springs(blade, "palpate by area as a disc", face(1e-3), 2 * E_plane / std::sqrt(pi * area));
   springs(blade, "springs under each point", face(1e-3), 1.4916 * E_plane / std::sqrt(area));
   for (const double apart : {width, width / 1.6, width / 2.6, width / 3.6})

@@ -76,14 +76,15 @@ class Touch {
     return result;
   }
 
-  /// What the tool pushes the body with after the last tick, for other tools on it.
-  [[nodiscard]] std::span<const SurfaceLoad<double>> loads() const noexcept
+  /// What the tool pushes the body with after the last tick, for other tools on it; until the next call.
+  [[nodiscard]] std::span<const SurfaceLoad<double>> loads() noexcept
     requires(is_resolved)
   {
+    solver_.state().loads(loads_);
     return {loads_.begin(), loads_.size()};
   }
   /// For several tools on one body: loads() of the others, for the next tick, until which they stay where
-  /// they are. The body gives way to them, too, and is drawn under all.
+  /// they are. The body is displaced by them, too, and is drawn under all.
   void set_beside(std::span<const SurfaceLoad<double>> loads) noexcept
     requires(is_resolved)
   {
@@ -147,15 +148,14 @@ class Touch {
 
   void hand_over() noexcept {
     Drawn& drawn = handed_over_.back();
-    drawn.clear();
     if constexpr (is_resolved) {
-      solver_.state().loads(loads_);
-      for (const SurfaceLoad<double>& load : loads_) drawn.push_back(load);
+      solver_.state().loads(drawn);
       for (const SurfaceLoad<double>& load : beside_) {
         if (!drawn.full()) drawn.push_back(load);
       }
       beside_ = {};
     } else {
+      drawn.clear();
       for (const ContactState<double>& contact : solver_.contacts()) drawn.push_back(contact);
     }
     handed_over_.publish();
@@ -165,7 +165,7 @@ class Touch {
   Tool tool_;
   PALPATE_NO_UNIQUE_ADDRESS decltype(Parts::fit) fit_;
   Solver solver_;
-  PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<is_resolved, Drawn, Absent<1>> loads_;
+  PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<is_resolved, Drawn, Absent<1>> loads_;  // of loads()
   using Loads = std::span<const SurfaceLoad<double>>;
   PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<is_resolved, Loads, Absent<2>> beside_;
   TripleBuffer<Drawn> handed_over_;

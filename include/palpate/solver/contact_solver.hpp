@@ -108,9 +108,8 @@ class ContactSolver {
     using State::TickMemory::points;    ///< likewise: forces at the tool's points
     using State::TickMemory::residual;  ///< what its conditions lack after the last tick
     /// `Contacts::max_beside` > 0: loads() of other tools on this body, for the next tick, kept until then.
+    using State::TickMemory::refresh;  ///< object or laws are others now: the next tick is worked out anew
     using State::TickMemory::set_beside;
-    /// Object or laws are others now: the next tick is worked out, though the pose is the last one's.
-    void refresh() noexcept { this->last_.ticks = (std::min)(this->last_.ticks, 1); }
     /// Forgets all contact, as after a calibration of the device, and what laws with memory remember.
     void reset() noexcept { this->forget(); }
 
@@ -172,7 +171,7 @@ class ContactSolver {
   /// Before any contact. Takes heap where the topology clusters.
   [[nodiscard]] State initial_state() const { return State(collector_.initial_state()); }
   [[nodiscard]] const State& state() const noexcept { return state_; }
-  void set_beside(const auto& loads) noexcept { state_.set_beside(loads); }
+  void set_beside(const auto& loads) noexcept { state_.set_beside(loads); }  ///< of the solver's own state
   /// The next tick goes on from `state`, one of this solver's.
   void restore(const State& state) noexcept { state_ = state; }
 
@@ -212,6 +211,7 @@ class ContactSolver {
     friction_ = friction;
     state_.refresh();
   }
+
   [[nodiscard]] const Object& object() const noexcept { return object_; }
   /// For objects that follow a deformation (geometry/deformed_surface.hpp): the next tick is worked out anew.
   [[nodiscard]] Object& mutable_object() noexcept {

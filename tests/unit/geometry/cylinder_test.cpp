@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 
 #include "support/check.hpp"
+#include "support/ray_checks.hpp"
 
 #include <palpate/geometry/cylinder.hpp>
 
@@ -58,13 +59,7 @@ TEST_CASE_TEMPLATE("cylinder: a ball over the rim is as far as the rim", S, floa
 
 TEST_CASE_TEMPLATE("cylinder: a ray beside the axis meets the side where Pythagoras has it", S, float,
                    double) {
-  const Cylinder<S> body({.radius = S(5), .half_height = S(1)});
-  const RayHit<S> in = body.raycast(Vec3<S>(-10, 0, 3), Vec3<S>(1, 0, 0)),
-                  out = body.raycast(Vec3<S>(0, 0, 3), Vec3<S>(1, 0, 0));
-  CHECK_ABSOLUTE(in.t, 6.0L, test::ulps<S>(8) * 10);
-  CHECK_ABSOLUTE((in.position - Vec3<S>(-4, 0, 3)).norm(), 0, test::ulps<S>(8) * 10);
-  CHECK_ABSOLUTE(out.t, 4.0L, test::ulps<S>(8) * 10);
-  CHECK(!body.raycast(Vec3<S>(-10, 0, S(5.001)), Vec3<S>(1, 0, 0)).hit);
+  test::check_ray_beside_middle<S>(Cylinder<S>({.radius = S(5), .half_height = S(1)}));
 }
 
 TEST_CASE_TEMPLATE("cylinder: the closest point to the corner of all numbers is on the rim", S, float,

@@ -51,7 +51,7 @@ class LoadsBeside {
       area_[size_++] = static_cast<float>(load.area);
     }
     for (std::size_t i = size_; i < padded<V>(size_); ++i) {  // what fills up the last register
-      x_.set(i, Vec3<float>::Constant(1e3f));
+      x_.set(i, PointSystem::apart());
       for (auto* list : {&m_, &P_}) list->set(i, Vec3<float>::Zero());
       area_[i] = 1;
     }
@@ -66,7 +66,7 @@ class LoadsBeside {
   /// beneath the undeformed surface alone, and a tool that lifts off would lose its force as the root of its
   /// depth.
   template <class RegularPart>
-  void give_way(PointSystem& system, RegularPart& regular) noexcept {
+  void move_points(PointSystem& system, RegularPart& regular) noexcept {
     if (size_ == 0) return;
     if constexpr (RegularPart::active) regular.gather_beside();
     float bulge = 0;

@@ -189,7 +189,7 @@ class ResolvedState {
     }
     if constexpr (Beside::active) beside_.place(force.compliance(), origin_, per_load_, regular_);
     if constexpr (RegularPart::active) regular_.build();
-    if constexpr (Beside::active) beside_.give_way(system_, regular_);
+    if constexpr (Beside::active) beside_.move_points(system_, regular_);
   }
   /// Displacement of point i by others' loads [m].
   [[nodiscard]] Vec3<float> given(std::size_t i) const noexcept {

@@ -61,6 +61,9 @@ struct TickMemory {
     law_ = {};
   }
 
+  /// The next tick is worked out, though the pose is the last one's.
+  void refresh() noexcept { last_.ticks = (std::min)(last_.ticks, 1); }
+
   [[nodiscard]] auto points() const noexcept
     requires requires(const Regions& r) { r.residual(); }
   {
@@ -76,7 +79,7 @@ struct TickMemory {
     requires requires(Regions& r) { r.set_beside(loads); }
   {
     regions_.set_beside(loads);
-    last_.ticks = (std::min)(last_.ticks, 1);
+    refresh();
   }
   [[nodiscard]] const auto& residual() const noexcept
     requires requires(const Regions& r) { r.residual(); }

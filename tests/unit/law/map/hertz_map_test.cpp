@@ -113,7 +113,7 @@ TEST_CASE("bad nodes are refused") {
   CHECK(HertzForce<float>({.k = 6e-39f, .compliance = 2e31f}).force(infinite) == infinite);
   const HertzForce<float> steep({.k = 1e-10f, .compliance = -1e28f});  // at 9e-38
   for (const float D : {1e-18f, 1.f, 1e24f}) {
-    const float right = 2.0556f * 1e-10f * D * std::sqrt(D);  // v^3 where v^2 - 0.3 v^3 = 1
+    const float right = 2.0556f * 1e-10f * D * std::sqrt(D);  // v^3 where v^2 - 0.3 v^3 = 1, five digits
     CHECK_RELATIVE(steep.force(D), right, 1e-4);
     CHECK_RELATIVE(steep.depth(right), D, 1e-4);
   }
