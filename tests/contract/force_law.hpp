@@ -13,6 +13,7 @@
 
 #include "support/check.hpp"
 
+#include <palpate/core/error.hpp>
 #include <palpate/law/force/concept.hpp>
 
 #include <cmath>
@@ -44,6 +45,29 @@ template <class Law>
   const long double two = (b - a) / 12 * (fa + 4 * fl + 2 * fm + 4 * fr + fb);
   if (level > 3 && (level > 40 || std::fabs(two - one) <= 1e-16L * whole)) return two + (two - one) / 15;
   return integral(law, a, m, whole, level + 1) + integral(law, m, b, whole, level + 1);
+}
+
+/// Up to the largest number and to infinity, and down to the smallest: every answer is a number or infinity,
+/// none falls, and the inverse stays within the law.
+template <Real S, class Law>
+void number_everywhere(const Law& law) {
+  using L = std::numeric_limits<S>;
+  std::vector<S> all{L::denorm_min(), (L::min)()};
+  for (int e = L::min_exponent; e < L::max_exponent; e += 3) all.push_back(std::ldexp(S(1), e));
+  all.insert(all.end(), {(L::max)() / S(2), (L::max)() * S(0.99L), (L::max)(), L::infinity()});
+  const S held = S(1) - S(64) * L::epsilon();  // a step down within rounding is not a fall
+  S force = S(0), energy = S(0), depth = S(0);
+  int bad = 0;  // a NaN makes every comparison false
+  for (const S x : all) {
+    const S F = law.force(x), U = law.energy(x), D = law.depth(x);
+    bad += !(F >= force * held) + !(U >= energy * held) + !(D >= depth * held);
+    bad += !(law.stiffness(x) >= S(0)) + !(D <= law.max_depth()) + !(law.depth(F) >= S(0));
+    force = F;
+    energy = U;
+    depth = D;
+  }
+  CHECK(bad == 0);
+  CHECK((force == law.force(law.max_depth()) || force == law.force((L::max)())));
 }
 
 /// A force law of whatever type, so that the suite is compiled once for all of them.
@@ -101,6 +125,7 @@ struct ForceLawSuite {
     inverse();
     held_beyond_the_stable_branch();
     units();
+    ends_of_the_range();
   }
 
   /// Depths over many decades below the example's depth.
@@ -130,10 +155,9 @@ struct ForceLawSuite {
     CHECK(law.stiffness(nan) == S(0));
     CHECK(law.energy(nan) == S(0));
     CHECK(law.depth(nan) == S(0));
-    // Infinitely deep: kept at the maximum where there is one, else not finite, which the solver catches.
-    const S deepest = law.force(infinity);
-    CHECK((!is_finite(deepest) || deepest == law.force(law.max_depth())));
-    CHECK((!is_finite(law.depth(infinity)) || law.depth(infinity) == law.max_depth()));
+    // Infinitely deep: kept at the maximum where there is one, else infinite, which the solver catches.
+    CHECK(law.force(infinity) == (is_finite(law.max_depth()) ? law.force(law.max_depth()) : infinity));
+    CHECK(law.depth(infinity) <= law.max_depth());
   }
 
   // 1e-14 in double, 1e-6 in float: the library's promise for a point pressed in.
@@ -244,6 +268,23 @@ struct ForceLawSuite {
       if (depth > S(0.99) * law.max_depth()) continue;
       CHECK_RELATIVE(decimal.force(depth / S(0.001)), law.force(depth) / S(0.1), ulps<S>(16));
     }
+  }
+
+  // As it is, and in units in which the parameters come near the ends of the range or are refused.
+  void ends_of_the_range() const {
+    number_everywhere<S>(law);
+    int made = 0;
+    for (int i = -6; i <= 6; ++i)
+      for (int j = -6; j <= 6; ++j) {
+        const int step = std::numeric_limits<S>::max_exponent / 8;
+        try {
+          const Law other = make(std::ldexp(S(1), i * step), std::ldexp(S(1), j * step));
+          ++made;
+          number_everywhere<S>(other);
+        } catch (const SetupError&) {
+        }
+      }
+    CHECK(made > 20);
   }
 };
 

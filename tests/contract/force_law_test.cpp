@@ -10,6 +10,8 @@
 #include <palpate/law/force/power_law.hpp>
 #include <palpate/law/force/saturated.hpp>
 #include <palpate/law/force/tabulated.hpp>
+#include <palpate/law/map/duffing_map.hpp>
+#include <palpate/law/map/hertz_map.hpp>
 
 #include <array>
 
@@ -157,5 +159,43 @@ PALPATE_FORCE_LAW_SUITE(SaturatedExample<TabulatedExample>);
 PALPATE_FORCE_LAW_SUITE(SaturatedExample<DuffingExample<-1>>);  // 0.18 N at most: never reaches the limit
 PALPATE_FORCE_LAW_SUITE(DampedExample<DuffingExample<1>, HuntCrossley>);
 PALPATE_FORCE_LAW_SUITE(DampedExample<SaturatedExample<DuffingExample<1>>, Viscous>);
+
+template <class Map>
+void map_at_the_ends_of_the_range(const typename Map::Coefficients& soft,
+                                  const typename Map::Coefficients& hard) {
+  using S = typename Map::Scalar;
+  const Vec3<S> corner = Vec3<S>::Constant(S(0.02));
+  const Map map({S(0.01), -corner, corner}, [&](const Vec3<S>& x) { return x.x() < S(0) ? soft : hard; });
+  for (const S x : {S(-1), S(-0.008), S(0), S(0.003), S(0.01), std::numeric_limits<S>::infinity()}) {
+    const auto law = map.at(Vec3<S>(x, S(0.001), S(0)));
+    test::number_everywhere<S>(law);
+    int bad = 0;
+    for (int e = -40; e < std::numeric_limits<S>::max_exponent; ++e)
+      bad += !is_finite(law.configurational_force(std::ldexp(S(1), e)));
+    CHECK(bad == 0);
+    CHECK(is_finite(law.configurational_force((std::numeric_limits<S>::max)())));
+    CHECK(is_finite(law.configurational_force(std::numeric_limits<S>::infinity())));
+  }
+}
+
+TEST_CASE_TEMPLATE("a law of a force map has numbers up to an infinite depth", S, float, double) {
+  map_at_the_ends_of_the_range<DuffingMap<S>>({S(40), S(0)}, {S(400), S(3e5)});
+  map_at_the_ends_of_the_range<DuffingMap<S>>({S(40), S(-3e5)}, {S(0), S(3e5)});
+  map_at_the_ends_of_the_range<HertzMap<S>>({S(9.7e4), S(0)}, {S(9.7e5), S(2e-4)});
+  map_at_the_ends_of_the_range<HertzMap<S>>({S(9.7e4), S(-2e-5)}, {S(9.7e5), S(2e-4)});
+  map_at_the_ends_of_the_range<HertzMap<S>>({S(1e-30), S(1e9)}, {S(1e9), S(1e-30)});
+}
+
+TEST_CASE("a Hertz map whose blend of two laws would be none is refused") {
+  using Map = HertzMap<float>;
+  const Map::Params params{0.01f, Vec3<float>::Constant(-0.02f), Vec3<float>::Constant(0.02f)};
+  const auto made = [&](float k, float C) {
+    return Map(params, [&](const Vec3<float>& x) {
+      return x.x() < 0 ? Map::Coefficients{k, 0} : Map::Coefficients{1, C};
+    });
+  };
+  CHECK_NOTHROW((void)made(1e8f, 1e8f));
+  CHECK_THROWS_AS((void)made(1e12f, 1e12f), SetupError);
+}
 
 }  // namespace

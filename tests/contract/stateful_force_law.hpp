@@ -35,6 +35,7 @@ struct StatefulForceLawSuite {
   void run() const {
     never_touched();
     bad_input();
+    ends_of_the_range();
     queries_of_a_state();
     without_contact_only_time_counts();
     never_gains();
@@ -98,6 +99,44 @@ struct StatefulForceLawSuite {
       }
     }
   }
+
+  // At depths up to the largest number and to infinity, in the state of a good depth: numbers that do not fall.
+  // After such a depth a good one gives a number again; so does what is carried to or from it.
+  void ends_of_the_range() const {
+    using L = std::numeric_limits<S>;
+    std::vector<S> deep;
+    for (int e = -20; e < L::max_exponent; ++e) deep.push_back(std::ldexp(S(1), e));
+    deep.insert(deep.end(), {(L::max)() / S(2), (L::max)(), L::infinity()});
+    const State pressed = law.advance({}, most, time);
+    S before = S(0), energy = S(0), reached = S(0);
+    int bad = 0;  // a NaN makes every comparison false
+    const auto numbers = [&](const State& state) {
+      for (const S depth : {most, L::infinity()})
+        bad += !(law.force(depth, state) >= S(0)) + !(law.energy(depth, state) >= S(0)) +
+               !(law.stiffness(depth, state) >= S(0)) + !(law.depth(depth, state) >= S(0));
+    };
+    for (const S x : deep) {
+      const S force = law.force(x, pressed), D = law.depth(x, pressed), U = law.energy(x, pressed);
+      bad += !(force >= before) + !(law.stiffness(x, pressed) >= S(0)) + !(D >= reached * (S(1) - ulps_of));
+      bad += x > most && !(U >= energy * (S(1) - ulps_of));
+      before = force;
+      energy = U;
+      reached = D;
+      State after = law.advance(pressed, x, time);
+      numbers(after);
+      after = law.advance(after, most, time);
+      numbers(after);
+      if constexpr (HasCarried<Law>) {
+        for (const S from : {most, x})
+          for (const S to : {L::denorm_min(), most, x}) {
+            const CarriedState<Law> parts[] = {{after, from, S(0.5)}, {pressed, L::denorm_min(), S(0.5)}};
+            numbers(law.carried(parts, to));
+          }
+      }
+    }
+    CHECK(bad == 0);
+  }
+  static constexpr S ulps_of = S(64) * std::numeric_limits<S>::epsilon();
 
   // Along a path: F against long double; the tangent is its derivative and the energy its integral at a constant
   // state; the inverse; no force at the depth of no force and above.

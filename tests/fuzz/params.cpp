@@ -51,13 +51,11 @@ void queries(const L& law, Bytes& in) {
     const S D = in.number<S>(), F = law.force(D);
     require(F >= S(0), "a law's force is a number >= 0");
     if (!(D > S(0))) require(F == S(0), "no depth, no force");
-    if (is_finite(F) && is_finite(F * D))
-      require(!is_nan(law.stiffness(D)) && law.energy(D) >= S(0), "stiffness and energy are numbers");
+    require(law.stiffness(D) >= S(0) && law.energy(D) >= S(0), "stiffness and energy are numbers >= 0");
     const S deeper = law.force(D + std::abs(D) / S(8));
-    if (is_finite(D) && is_finite(deeper)) require(deeper >= F * (S(1) - S(1e-5)), "a law does not fall");
-    const S f = in.number<S>();
-    if (!(f > std::numeric_limits<S>::max() / S(2)))  // next to the largest number a law's inverse overflows
-      require(law.depth(f) >= S(0), "a law's depth is a number >= 0");
+    if (!is_nan(D)) require(deeper >= F * (S(1) - S(1e-5)), "a law does not fall");
+    const S f = in.number<S>(), at = law.depth(f);
+    require(at >= S(0) && at <= law.max_depth(), "a law's depth is a number within the law");
   }
 }
 template <FrictionLimits L>
@@ -71,17 +69,12 @@ void limits(const L& law, Bytes& in) {
 template <StatefulForceLaw L>
 void memory(const L& law, Bytes& in) {
   typename L::State state;
-  S deepest = S(0);
   for (int k = 0; k < 16 && !in.empty(); ++k) {
     const S D = in.number<S>(), dt = in.number<S>();
     state = law.advance(state, D, dt);
     require(law.force(D, state) >= S(0), "a law with memory pushes");
-    deepest = (std::max)(deepest, D);
-    if (is_finite(S(64) * law.force(deepest) * deepest))  // else what it remembers may be out of range
-      require(!is_nan(law.energy(D, state)) && !is_nan(law.stiffness(D, state)), "its energy is a number");
-    const S f = in.number<S>();
-    if (is_finite(S(2) * (f + law.force(deepest))))
-      require(!is_nan(law.depth(f, state)), "its depth is a number");
+    require(law.energy(D, state) >= S(0) && law.stiffness(D, state) >= S(0), "its energy is a number >= 0");
+    require(law.depth(in.number<S>(), state) >= S(0), "its depth is a number >= 0");
   }
 }
 
@@ -280,7 +273,9 @@ void one(std::uint8_t kind, Bytes& in) {
       const HertzMap<S> map({w, low, high}, [&](const Vec3<S>& x) {
         return typename HertzForce<S>::Params{k * (S(2) + x.x()), C};
       });
-      queries(map.at(in.numbers<S>()), in);
+      const auto law = map.at(in.numbers<S>());
+      queries(law, in);
+      return require(is_finite(law.configurational_force(n())), "a configurational force is finite");
     }
   }
 }

@@ -16,9 +16,10 @@
 /// | `RelaxingForce<L>`  | L, less a Prony series      | decorator: relaxes and creeps; has a state         |
 ///
 /// Convention: depth D [m] > 0 is compression and force F [N] > 0 pushes the tool out; D <= 0 is no contact
-/// and gives exactly 0, and so does NaN, whatever the host's flags. Laws use no heap and no Eigen; what a law
-/// remembers is a value that the solver keeps for each region. Absent on purpose: adhesion, because the
-/// friction limits are those of F >= 0.
+/// and gives exactly 0, and so does NaN, whatever the host's flags. No answer is NaN: what leaves the range
+/// of the scalar, up to an infinite depth, stays at the law's maximum or is infinity, which the solver
+/// refuses. Laws use no heap and no Eigen; what a law remembers is a value that the solver keeps for each
+/// region. Absent on purpose: adhesion, because the friction limits are those of F >= 0.
 
 #include <palpate/core/scalar.hpp>
 

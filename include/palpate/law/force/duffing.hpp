@@ -136,9 +136,10 @@ class DuffingForce {
   /// Integral of F from 0 to D [J].
   [[nodiscard]] S energy(S depth) const noexcept {
     if (!is_positive(depth)) return S(0);
+    depth = (std::min)(depth, (std::numeric_limits<S>::max)());  // 0 times infinity would be NaN
     const S d = (std::min)(depth, max_depth_);
     const S stored = d * (d * (p_.c1 / S(2) + (p_.c3 / S(4) * d) * d));
-    return depth < max_depth_ ? stored : stored + max_force_ * (depth - max_depth_);
+    return depth > d ? stored + max_force_ * (depth - d) : stored;
   }
 
   /// D [m] at the force F [N]: the inverse of (3). max_depth() where F >= max_force().
@@ -148,6 +149,10 @@ class DuffingForce {
     if (p_.c3 == S(0)) return force / p_.c1;
     // Above 3/4 of F_max (chosen) the distance to the fold has more digits than D.
     if (p_.c3 < S(0) && force > S(0.75) * max_force_) return depth_near_fold(force);
+    // The products below may exceed F a little; halved coefficients have the same root.
+    if (force > (std::numeric_limits<S>::max)() / S(2)) {
+      return DuffingForce({p_.c1 / S(2), p_.c3 / S(2)}, Known{}).depth(force / S(2));
+    }
     // D = D0 y with a y + b y^3 = 1. D0 is the min of the roots of the linear and of the cubic law alone, the
     // cubic one within 3.2 %. The root y lies in [0.66, 1.14], a and b are of order 1 at most, and the fitted
     // polynomials below are within 2.7 % of it. Two of Halley's steps, of cubic convergence, do the rest. a
@@ -161,7 +166,7 @@ class DuffingForce {
       linear = start < cubic;
       start = (std::min)(start, cubic);
     }
-    if (!(start > S(0))) return S(0);  // below the smallest number
+    if (!(start > S(0) && start <= (std::numeric_limits<S>::max)())) return start;  // out of the range
     const S a = p_.c1 * start / force;
     const S b = p_.c3 * start * start * start / force;
     S y = linear ? S(1.0103) + b * (S(-0.8353) + b * (S(0.8643) - b * S(0.3541)))  // a = 1
@@ -235,7 +240,7 @@ class DuffingForce {
   }
 
   Params p_;
-  S per_c1_ = S(1) / p_.c1, per_cbrt_c3_ = S(1) / std::cbrt(p_.c3);
+  S per_c1_ = S(1) / std::abs(p_.c1), per_cbrt_c3_ = S(1) / std::cbrt(p_.c3);  // c1 may be -0
   S max_depth_ = std::numeric_limits<S>::infinity();
   S max_force_ = std::numeric_limits<S>::infinity();
   S max_force_rest_ = S(0);

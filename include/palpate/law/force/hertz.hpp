@@ -52,6 +52,7 @@ class HertzForce {
   /// dF/dD [N/m] at depth D [m].
   [[nodiscard]] S stiffness(S depth) const noexcept {
     if (!is_positive(depth)) return S(0);
+    depth = finite(depth);
     const Split s = at(depth);
     return s.force / (depth * (depth > s.depth ? S(2) / S(3) : S(1) - s.own / S(3)));
   }
@@ -59,13 +60,14 @@ class HertzForce {
   [[nodiscard]] S energy(S depth) const noexcept {
     if (!is_positive(depth)) return S(0);
     // Exact: int F dD = 2/5 F (D - C F) + 1/2 C F^2 in the series, 2/5 F D of a law D^(3/2) beyond its end.
+    depth = finite(depth);
     const Split s = at(depth);
-    return s.series_force * s.depth * (S(0.5) - S(0.1L) * s.own) +
-           S(0.4L) * (s.force * depth - s.series_force * s.depth);
+    return s.series_force * s.depth * (S(0.5) - S(0.1L) * s.own) + S(0.4L) * beyond_series(s, depth);
   }
   /// D [m] at the force F [N].
   [[nodiscard]] S depth(S force) const noexcept {
     if (!is_positive(force)) return S(0);
+    force = finite(force);
     if (p_.compliance < S(0)) {
       const Split end = at(series_depth());
       if (force > end.force) {
@@ -74,7 +76,8 @@ class HertzForce {
       }
     }
     const S root = std::cbrt(force / p_.k);
-    return root * root + p_.compliance * force;
+    // At least 0: the square may be below the smallest number.
+    return (std::max)(root * root + p_.compliance * force, S(0));
   }
   /// No limit: infinity.
   [[nodiscard]] S max_depth() const noexcept { return std::numeric_limits<S>::infinity(); }
@@ -102,6 +105,13 @@ class HertzForce {
     const S cube = v * v * v, force = p_.k * root * d * cube;
     return {depth > d ? p_.k * std::sqrt(depth) * depth * cube : force, d, force, v * v};
   }
+  // F D - F_e D_e [J] beyond where the series ends, else 0; in this order max() gives 0 for infinity less
+  // infinity, where F_e D_e alone is out of the range.
+  [[nodiscard]] static S beyond_series(const Split& s, S depth) noexcept {
+    return (std::max)(S(0), s.force * depth - s.series_force * s.depth);
+  }
+  // Infinity times or over another number of this law would be NaN.
+  [[nodiscard]] static S finite(S x) noexcept { return (std::min)(x, (std::numeric_limits<S>::max)()); }
   // Where the series ends: e = -0.3, chosen before the fold at e = -0.385, -2/(3 sqrt(3)).
   [[nodiscard]] S series_depth() const noexcept {
     if (!(p_.compliance < S(0))) return (std::numeric_limits<S>::max)();

@@ -91,7 +91,8 @@ class PlasticForce : public detail::WithLaw<Law> {
       const S fresh = law_.force(part.depth);
       left += part.share * (fresh > S(0) ? law_.force(part.depth - part.state.set) / fresh : S(1));
     }
-    return {(std::max)(depth - law_.depth((std::min)(left, S(1)) * law_.force(depth)), S(0))};
+    const S set = depth - law_.depth((std::min)(left, S(1)) * law_.force(depth));
+    return {is_positive(set) && is_finite(set) ? set : S(0)};
   }
 
   [[nodiscard]] S extent() const noexcept { return p_.extent; }

@@ -65,7 +65,7 @@ class PowerLawForce {
   }
   /// dF/dD [N/m] at depth D [m].
   [[nodiscard]] S stiffness(S depth) const noexcept {
-    return is_positive(depth) ? p_.p * p_.k * std::pow(depth, p_.p - S(1)) : S(0);
+    return is_positive(depth) ? p_.k * (p_.p * std::pow(depth, p_.p - S(1))) : S(0);
   }
   /// Integral of F from 0 to D [J].
   [[nodiscard]] S energy(S depth) const noexcept {

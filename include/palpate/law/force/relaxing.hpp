@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -80,7 +81,7 @@ class RelaxingForce : public detail::WithLaw<Law> {
   /// The state dt [s] later, at depth D [m].
   [[nodiscard]] State advance(const State& state, S depth, S dt) const noexcept {
     const S pressed = law_.force(depth);
-    if (!is_finite(pressed)) return state;
+    if (!(pressed < (std::numeric_limits<S>::max)() / S(2))) return state;  // what follows may be larger
     const S time = is_positive(dt) && is_finite(dt) ? dt : S(0);
     // s_i at the end is fixed_i + b_i u for the law's force u there, which without contact is sum g_i s_i.
     std::array<S, N> fixed, slope;
@@ -116,7 +117,8 @@ class RelaxingForce : public detail::WithLaw<Law> {
       const S dual = law_.depth(state.relaxed[i]);
       sum += p_.terms[i].part * (state.relaxed[i] * dual - law_.energy(dual));
     }
-    return (std::max)(sum, S(0));  // rounding of what cancels
+    // Rounding of what cancels; NaN where the terms leave the scalar's range.
+    return is_finite(sum) ? (std::max)(sum, S(0)) : std::numeric_limits<S>::infinity();
   }
   /// D [m] at the force F [N]; D_free where there is none.
   [[nodiscard]] S depth(S force, const State& state) const noexcept {
@@ -126,12 +128,15 @@ class RelaxingForce : public detail::WithLaw<Law> {
   /// The parts' mean, each s_i as a share of the law's force, at depth D [m].
   [[nodiscard]] State carried(std::span<const CarriedState<RelaxingForce>> parts, S depth) const noexcept {
     State state;
-    state.elastic = law_.force(depth);
+    constexpr S most = (std::numeric_limits<S>::max)();
+    state.elastic = (std::min)(law_.force(depth), most);
     for (const CarriedState<RelaxingForce>& part : parts) {
       const S fresh = law_.force(part.depth);
       if (!(fresh > S(0))) continue;
       for (std::size_t i = 0; i < N; ++i)
-        state.relaxed[i] += part.share * state.elastic * (part.state.relaxed[i] / fresh);
+        state.relaxed[i] = (std::min)(
+            most, state.relaxed[i] +
+                      part.share * (state.elastic * (std::min)(part.state.relaxed[i] / fresh, most)));
     }
     return state;
   }

@@ -26,10 +26,10 @@ namespace palpate {
 ///
 /// A parabola joins the law and the limit with continuous slope (C1), zero at the limit; dF/dD jumps nowhere
 /// that the law's does not, d2F/dD2 jumps at both ends. Force, tangent, energy and inverse are closed forms.
-/// A law whose own maximum is within the limit is left as it is. Bad parameters, or a law with zero stiffness
-/// at the knee: SetupError. Does not cap a rate term: decorate in this order,
-/// DampedForce<SaturatedForce<Law>>, and let the device's gate bound the total. No equation: own choice; any
-/// C1 cap would do, this one has the simplest inverse.
+/// A law whose own maximum is within the limit is left as it is. Bad parameters, a law with zero stiffness at
+/// the knee, or a limit whose depth leaves the scalar's range: SetupError. Does not cap a rate term: decorate
+/// in this order, DampedForce<SaturatedForce<Law>>, and let the device's gate bound the total. No equation:
+/// own choice; any C1 cap would do, this one has the simplest inverse.
 template <ForceLaw Law>
 class SaturatedForce {
   static_assert(!RateDependentForceLaw<Law>,
@@ -52,14 +52,19 @@ class SaturatedForce {
     if (!is_finite(p_.knee) || !(p_.knee > S(0) && p_.knee < S(1))) {
       fail("SaturatedForce", "knee [-] must be in (0, 1)", static_cast<double>(p_.knee));
     }
-    if (!(law_.depth(p_.limit) < law_.max_depth())) return;  // the law stays within the limit by itself
+    if (law_.force(law_.max_depth()) <= p_.limit) return;  // the law stays within the limit by itself
     knee_force_ = p_.knee * p_.limit;
     knee_depth_ = law_.depth(knee_force_);
     stiffness_ = law_.stiffness(knee_depth_);
     require_positive(stiffness_, "SaturatedForce",
                      "the law's stiffness [N/m] at the knee must be > 0 and finite");
     room_ = p_.limit - knee_force_;
-    max_depth_ = knee_depth_ + S(2) * room_ / stiffness_;
+    width_ = S(2) * (room_ / stiffness_);
+    max_depth_ = knee_depth_ + width_;
+    if (!is_positive(width_) || !is_finite(max_depth_)) {
+      fail("SaturatedForce", "limit [N] has no depth within the scalar's range",
+           static_cast<double>(p_.limit));
+    }
     knee_energy_ = law_.energy(knee_depth_);
   }
 
@@ -87,7 +92,7 @@ class SaturatedForce {
     if (!(force < p_.limit)) return max_depth_;
     const S y = (force - knee_force_) / room_;
     const S r = y / (S(1) + std::sqrt(S(1) - y));  // 1 - sqrt(1 - y) without its cancellation
-    return knee_depth_ + r * (max_depth_ - knee_depth_);
+    return knee_depth_ + r * width_;
   }
   /// Depth [m] at which the limit is reached; the law's own where it never is.
   [[nodiscard]] S max_depth() const noexcept { return max_depth_; }
@@ -97,9 +102,7 @@ class SaturatedForce {
  private:
   bool beyond_knee(S depth) const noexcept { return is_positive(depth) && depth > knee_depth_; }
   // How far from the knee to the limit, 0 to 1.
-  S reached(S depth) const noexcept {
-    return (std::min)((depth - knee_depth_) * stiffness_ / (S(2) * room_), S(1));
-  }
+  S reached(S depth) const noexcept { return (std::min)((depth - knee_depth_) / width_, S(1)); }
 
   Law law_;
   Params p_;
@@ -109,6 +112,7 @@ class SaturatedForce {
   S knee_energy_ = S(0);
   S stiffness_ = S(0);
   S room_ = S(0);
+  S width_ = S(0);  // of the parabola [m]
 };
 
 static_assert(ForceLaw<SaturatedForce<LinearForce<float>>> && ForceLaw<SaturatedForce<LinearForce<double>>>);

@@ -73,7 +73,10 @@ class TabulatedForce {
       p.quadratic = (S(3) * d - S(2) * s0 - s1) / h;
       p.cubic = (s0 + s1 - S(2) * d) / h / h;
       pieces_[i + 1].energy = p.energy_at(h);
-      if (!is_finite(p.quadratic) || !is_finite(p.cubic) || !is_finite(pieces_[i + 1].energy)) {
+      // The coefficients' rounding below the smallest normal number must not show in the slope.
+      const S span = (std::max)(h, S(1));
+      if (!((std::numeric_limits<S>::min)() * span * span <= d) || !is_finite(S(2) * p.quadratic) ||
+          !is_finite(S(3) * p.cubic) || !is_finite(pieces_[i + 1].energy)) {
         fail_at("TabulatedForce", "curvature or energy of the curve is out of the scalar's range", "sample",
                 i, static_cast<double>(h));
       }

@@ -27,12 +27,14 @@ class LocalDuffing : public DuffingForce<S> {
     return sharp[0] > given[0] / S(2);
   }
 
-  /// - dU/dx [N] at depth D [m], U = c1 D^2/2 + c3 D^4/4; beyond max_depth() U goes on linearly. 0 for D <= 0
-  /// and NaN.
+  /// - dU/dx [N] at depth D [m], U = c1 D^2/2 + c3 D^4/4; beyond max_depth() U goes on linearly. 0 for NaN,
+  /// for D <= 0 and where it leaves the scalar's range.
   [[nodiscard]] Vec3<S> configurational_force(S depth) const noexcept {
     if (!is_positive(depth)) return Vec3<S>::Zero();
     const S d = (std::min)(depth, this->max_depth()), beyond = depth - d;
-    return -(d * (d / S(2) + beyond)) * c1_gradient_ - (d * d) * (d * (d / S(4) + beyond)) * c3_gradient_;
+    const Vec3<S> f =
+        -(d * (d / S(2) + beyond)) * c1_gradient_ - (d * d) * (d * (d / S(4) + beyond)) * c3_gradient_;
+    return is_finite(f) ? f : Vec3<S>(Vec3<S>::Zero());
   }
 
  private:

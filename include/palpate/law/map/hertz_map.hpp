@@ -32,16 +32,24 @@ class LocalHertz : public HertzForce<S> {
     return sharp[0] > given[0] / S(2) && std::abs(sharp[1] - given[1]) <= std::abs(given[1]) / S(2);
   }
 
+  /// Between the nodes k may be that of one and C that of another: reports a map whose stiffest k and largest
+  /// C make no law.
+  static void check_blends(const Pair& least, const Pair& most) {
+    const S C = (std::max)(std::abs(least[1]), std::abs(most[1]));
+    for (const S p : {least[0], most[0]}) (void)Law({.k = S(1) / (p * std::sqrt(p)), .compliance = C});
+  }
+
   /// - dU/dx [N] at depth D [m]: (3/5) F^(5/3) dp/dx + (1/2) F^2 dC/dx; where HertzForce's series has ended,
-  /// at D_e with F_e, ((3/5) F_e^(5/3) + (3/5) (F D - F_e D_e) / p) dp/dx + (1/2) F_e^2 dC/dx. 0 for D <= 0
-  /// and NaN.
+  /// at D_e with F_e, ((3/5) F_e^(5/3) + (3/5) (F D - F_e D_e) / p) dp/dx + (1/2) F_e^2 dC/dx. 0 for D <= 0,
+  /// for NaN and where it leaves the scalar's range.
   [[nodiscard]] Vec3<S> configurational_force(S depth) const noexcept {
     if (!is_positive(depth)) return Vec3<S>::Zero();
+    depth = this->finite(depth);
     const auto s = this->at(depth);
-    return (S(0.6L) / p_ *
-            (s.series_force * s.depth * s.own + (s.force * depth - s.series_force * s.depth))) *
-               p_gradient_ +
-           (s.series_force / S(2) * s.series_force) * compliance_gradient_;
+    const Vec3<S> f =
+        (S(0.6L) / p_ * (s.series_force * s.depth * s.own + this->beyond_series(s, depth))) * p_gradient_ +
+        (s.series_force / S(2) * s.series_force) * compliance_gradient_;
+    return is_finite(f) ? f : Vec3<S>(Vec3<S>::Zero());
   }
 
  private:

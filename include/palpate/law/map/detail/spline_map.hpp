@@ -73,6 +73,7 @@ class SplineMap {
     nodes_.reserve(all.size());
     for (const Vec3<S>& node : all) nodes_.push_back(L::pair(typename L::Law(coefficients(node)).params()));
     sharpen();
+    check_blends();
     for (const Pair& c : nodes_)
       max_depth_ = (std::min)(max_depth_, L(c, Vec3<S>::Zero(), Vec3<S>::Zero()).max_depth());
   }
@@ -158,8 +159,22 @@ class SplineMap {
           const std::size_t i = x + y * step[1] + z * step[2];
           Pair sharp = S(1.75L) * given[i];  // 1 + 6/8
           for (const std::size_t to : step) sharp -= (given[i - to] + given[i + to]) / S(8);
-          if (L::may_sharpen(given[i], sharp)) nodes_[i] = sharp;
+          if (is_finite(sharp[0]) && is_finite(sharp[1]) && L::may_sharpen(given[i], sharp))
+            nodes_[i] = sharp;
         }
+  }
+
+  // What holds at each node must hold of every blend: a sum of 27 rounded products.
+  void check_blends() const {
+    Pair least = nodes_.front(), most = least;
+    for (const Pair& c : nodes_) {
+      least = least.min(c);
+      most = most.max(c);
+    }
+    const S largest = (std::max)(most.abs().maxCoeff(), least.abs().maxCoeff());
+    if (!(largest <= (std::numeric_limits<S>::max)() / S(2)))
+      fail(L::name, "coefficients are out of the scalar's range", static_cast<double>(largest));
+    if constexpr (requires { L::check_blends(least, most); }) L::check_blends(least, most);
   }
 
   S w_;
