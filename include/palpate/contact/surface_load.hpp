@@ -14,6 +14,7 @@ struct SurfaceLoad {
   Vec3<S> direction;  ///< of pressing, into the body, unit
   Vec3<S> force;      ///< on the body [N]
   S area;             ///< of the cell [m^2]
+  S softening = 0;    ///< by finite strain: near it 1 + softening of the half-space's displacement
 };
 
 }  // namespace palpate

@@ -43,17 +43,17 @@ template <Real S>
 /// Precondition: X is usable (core/pose.hpp). A ball that surface.separated() says is apart is left out with
 /// all its points; so a tool far away costs one such test, and the rest costs in proportion to what touches:
 /// every point that touches is visited, with the others of its leaf. The loop ends after at most one test for
-/// each node.
+/// each node. `margin` [m]: points that are no farther outside are visited, too.
 template <Real S, ContactSurface B, class Visit>
   requires std::same_as<S, typename B::Scalar>
 inline void for_each_candidate_leaf(const ToolPoints<S>& tool, const Pose<S>& X, const B& surface,
-                                    const Visit& visit) noexcept {
+                                    const Visit& visit, S margin = S(0)) noexcept {
   const auto nodes = tool.nodes();
   const S stretch = detail::max_stretch(X.rotation);
   // More than the rounding of X * p, which may differ between a ball's centre and its points.
   const S reach =
       nodes[0].centre.cwiseAbs().maxCoeff() + nodes[0].radius + X.translation.cwiseAbs().maxCoeff();
-  const S guard = S(16) * std::numeric_limits<S>::epsilon() * reach;
+  const S guard = S(16) * std::numeric_limits<S>::epsilon() * reach + margin;
   for (std::uint32_t n = 0; n < nodes.size();) {
     const auto& node = nodes[n];
     if (surface.separated(X * node.centre, stretch * node.radius + guard)) {

@@ -46,9 +46,9 @@ Pose<double> at(const V& x) {
 }  // namespace
 
 TEST_CASE(
-    "a ball as a mesh on an ellipsoid: nonlinear finite elements' force within 4.5 %, 3.5 % rms, to 8 mm") {
+    "a ball as a mesh on an ellipsoid: nonlinear finite elements' force within 2.5 %, 2 % rms, to 8 mm") {
   // Force [N] of a frictionless ball of 15 mm on rubber of 1.5 MPa, nu 0.49, computed with 10-node tetrahedra;
-  // two meshes differ by 0.3 to 1 %. By depth [mm]. Of linear elasticity 2 to 3 % are to be expected.
+  // two meshes differ by 0.3 to 1 %. By depth [mm]. Measured: 0.4 to 1.5 %, of linear elasticity 4 %.
   struct Row {
     double depth, force;
   };
@@ -60,10 +60,11 @@ TEST_CASE(
     const double error = result.wrench.force.y() / row.force - 1;
     CAPTURE(row.depth);
     CAPTURE(error);
-    CHECK(std::abs(error) <= 0.045);
+
+    CHECK(std::abs(error) <= 0.025);
     sum += error * error;
   }
-  CHECK(std::sqrt(sum / 4) <= 0.035);
+  CHECK(std::sqrt(sum / 4) <= 0.02);
 }
 
 TEST_CASE("without friction a closed path gives no energy: pressed, rolled over the body, lifted") {

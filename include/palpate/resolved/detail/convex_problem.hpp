@@ -4,12 +4,13 @@
 /// @file The problem of a contact resolved at its points, without friction and with it.
 ///
 ///     q >= 0,  m.u - d >= 0,  one of them 0;  u = A P, q = m.P, t = P - q m           Signorini
-///     |t| <= mu q;  sticks: u_t = a;  slips: t = mu q along a - u_t                     Coulomb
+///     |t| <= mu s q;  sticks: u_t = a;  slips: t = mu s q along a - u_t                 Coulomb
 ///
-/// Without friction by conjugate gradients on the loaded points. With friction by gradients of all loads at
-/// once, projected onto the cones, with Barzilai and Borwein's step: where a tool slides the cones hold every
-/// point, and conjugate gradients would begin anew each time. Both begin with the last tick's result, from
-/// which a tick's hardly differs: some 3 iterations. A bound on them is kept; the residual says what is left.
+/// s: pressure on the tool over its part along m. Without friction by conjugate gradients on the loaded
+/// points. With friction by gradients of all loads at once, projected onto the cones, with Barzilai and
+/// Borwein's step: where a tool slides the cones hold every point, and conjugate gradients would begin anew
+/// each time. Both begin with the last tick's result, from which a tick's hardly differs: 0 to 3 iterations.
+/// A bound on them is kept; the residual says what is left.
 /// Source: [polonsky1999], [barzilai1988].
 
 #include <palpate/core/aligned_list.hpp>
@@ -99,24 +100,35 @@ template <class Apply>
 /// A point slips from this share of its limit on, both squared: rounding of a load on its cone is below.
 inline constexpr float slips_from = 0.9999f;
 
+/// What presses on the tool's surface, of outward normal `outward` (any length), over its part along m: at
+/// most 2.
+[[nodiscard]] inline float slant(const Vec3<float>& outward, const Vec3<float>& m) noexcept {
+  return 1 / clamp(outward.dot(m) / outward.norm(), 0.5f, 1.f);
+}
+
+/// Squared: what is along a slip, over the slip, by rounding alone. Where a tool lifts off as it slides, the
+/// slip is a thousand times the depth.
+inline constexpr float rounding2 = 4e-12f;
+
 /// Lists of a solve with friction, sized at set-up. Vectors: loads P on the body, displacements u, where
 /// points that stick hold the surface, a, and what an iteration changes.
 struct FrictionLists {
   VectorList load, u, anchor, load_step, u_step;
-  AlignedList<float> held;  ///< 1 where the point has an anchor, 0 where it has just come in: no tractions
-  float step = 0;           ///< the last tick's last; 0: none [1/m]
-  float mu = 0;             ///< of the result
+  AlignedList<float> held;   ///< 1 where the point has an anchor, 0 where it has just come in: no tractions
+  AlignedList<float> slant;  ///< pressure on the tool's slanted surface over its part along m
+  float step = 0;            ///< the last tick's last; 0: none [1/m]
+  float mu = 0;              ///< of the result
   void resize(std::size_t size) {
     for (auto* list : {&load, &u, &anchor, &load_step, &u_step}) list->resize(size);
-    held.resize(size);
+    for (auto* list : {&held, &slant}) list->resize(size);
   }
 };
 
 /// A load of normal part q >= 0 along m and tractions t, these within mu q.
 template <class V>
-[[nodiscard]] PALPATE_INLINE SimdVec3<V> within_cone(float mu, const SimdVec3<V>& m, const V& q,
+[[nodiscard]] PALPATE_INLINE SimdVec3<V> within_cone(const V& mu, const SimdVec3<V>& m, const V& q,
                                                      const SimdVec3<V>& t) noexcept {
-  const V t2 = dot(t, t), bound = V(mu) * q, tiny((std::numeric_limits<float>::min)());
+  const V t2 = dot(t, t), bound = mu * q, tiny((std::numeric_limits<float>::min)());
   return q * m + select(t2 > bound * bound, bound * inverse_sqrt((max)(t2, tiny)), V(1.f)) * t;
 }
 
@@ -136,7 +148,8 @@ template <class Apply, class Coefficient>
   for (std::size_t i = 0; i < n; i += V::size()) {
     const SimdVec3<V> mi = m.load(i), P = lists.load.load(i);
     const V q = dot(mi, P);
-    lists.load.store(i, within_cone(lists.mu, mi, (max)(q, zero), V(&lists.held[i]) * (P - q * mi)));
+    lists.load.store(i, within_cone(V(lists.mu) * V(&lists.slant[i]), mi, (max)(q, zero),
+                                    V(&lists.held[i]) * (P - q * mi)));
   }
   if (lists.step == 0) lists.step = first_step;
   apply(lists.load, lists.u);
@@ -146,7 +159,8 @@ template <class Apply, class Coefficient>
     total = V(0.f);
     for (std::size_t i = 0; i < n; i += V::size()) {
       const SimdVec3<V> mi = m.load(i), P = lists.load.load(i), u = lists.u.load(i);
-      const V held(&lists.held[i]), q = dot(mi, P), limit = V(mu) * (max)(q, zero);
+      const V held(&lists.held[i]), q = dot(mi, P), mui = V(mu) * V(&lists.slant[i]),
+                                    limit = mui * (max)(q, zero);
       const SimdVec3<V> t = P - q * mi, from = u - lists.anchor.load(i);
       const V gap = dot(mi, u) - V(d + i);
       const SimdVec3<V> g = held * (from - dot(mi, from) * mi);
@@ -155,10 +169,11 @@ template <class Apply, class Coefficient>
       const SimdVec3<V> along =
           g - select(t2 < V(slips_from) * limit * limit, zero, out / (max)(t2, tiny)) * t;
       const V wrong = select(q > zero, gap, (min)(gap, zero));
-      left += wrong * wrong + select(limit > zero, dot(along, along), zero);
+      const V along2 = dot(along, along), counts = V(rounding2) * dot(g, g);
+      left += wrong * wrong + select(limit > zero, select(along2 > counts, along2, zero), zero);
       // A step down, held within the cone.
       const V next = (max)(q - V(normal) * gap, zero);
-      const SimdVec3<V> step = within_cone(mu, mi, next, t - V(across) * g) - P;
+      const SimdVec3<V> step = within_cone(mui, mi, next, t - V(across) * g) - P;
       const V dq = dot(mi, step);
       PP += V(tangential) * dot(step, step) + V(1 - tangential) * dq * dq;
       total += next;

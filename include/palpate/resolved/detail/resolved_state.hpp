@@ -9,11 +9,14 @@
 #include <palpate/detection/tool_points.hpp>
 #include <palpate/resolved/contact_points.hpp>
 #include <palpate/resolved/detail/bounded_list.hpp>
+#include <palpate/resolved/detail/carried_surface.hpp>
 #include <palpate/resolved/detail/contact_area.hpp>
 #include <palpate/resolved/detail/convex_problem.hpp>
+#include <palpate/resolved/detail/finite_strain.hpp>
 #include <palpate/resolved/detail/loads_beside.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/resolved/detail/static_strength.hpp>
+#include <palpate/resolved/detail/tick_change.hpp>
 #include <palpate/resolved/detail/touching_point.hpp>
 #include <palpate/resolved/elastic_contact.hpp>
 
@@ -41,7 +44,9 @@ class ResolvedState {
         system_(capacity, static_cast<float>(1 - 2 * body.nu()), has_friction),
         unloaded_(capacity),
         regular_(body, capacity),
-        beside_(max_beside, capacity, static_cast<float>(1 - 2 * body.nu())) {
+        beside_(max_beside, capacity, static_cast<float>(1 - 2 * body.nu())),
+        carried_(capacity),
+        strain_(body.nu()) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
     pressure_.resize(padded);
     if constexpr (has_friction) friction_.resize(padded);
@@ -50,7 +55,6 @@ class ResolvedState {
   void reset() noexcept {
     contacts_.clear();
     tick_ += 2;  // no point has touched in the tick before
-    if constexpr (Beside::active) beside_.set({});
     forget();
   }
   [[nodiscard]] bool has_contact() const noexcept { return !contacts_.empty(); }
@@ -66,7 +70,8 @@ class ResolvedState {
       const Point& p = points_[at.point];
       if (!p.loaded) continue;
       out.push_back({origin_ + system_.foot(i).template cast<S>(), system_.direction(i).template cast<S>(),
-                     per_load_ * p.load.template cast<S>(), static_cast<S>(system_.area(i))});
+                     per_load_ * p.load.template cast<S>(), static_cast<S>(system_.area(i)),
+                     static_cast<S>(strain_.softening())});
     }
   }
   /// Loads of other tools on the same body, for the next solve().
@@ -91,8 +96,10 @@ class ResolvedState {
     ++tick_;
     touching_.clear();
   }
-  /// Tool point i, at x in object coordinates, is `depth` in the body, whose inward normal is m. False where
-  /// there is no place left.
+  /// Where friction has carried the surface.
+  [[nodiscard]] const auto& carried() const noexcept { return carried_; }
+  /// Tool point i, over x in object coordinates (carried().before()), is `depth` in the body, whose inward
+  /// normal is m. False where there is no place left.
   bool touch(std::uint32_t i, const Vec3<S>& x, S depth, const Vec3<S>& m) noexcept {
     if (touching_.full()) return false;
     touching_.push_back({i, x, m.template cast<float>(), static_cast<float>(depth)});
@@ -106,22 +113,19 @@ class ResolvedState {
   template <class Friction>
   [[nodiscard]] bool solve(const Force& force, const Friction& friction, const ToolPoints<S>& tool,
                            const Pose<S>& X) noexcept {
+    const bool first = contacts_.empty();
     contacts_.clear();
     residual_ = {};
     per_load_ = static_cast<S>(4 * std::numbers::pi * force.shear_modulus());
     const Pose<S> before = std::exchange(pose_, X);
     if (touching_.empty()) {
-      if constexpr (Beside::active) beside_.set({});
       forget();
       return true;
     }
     float deepest = 0, size2 = 0;
-    for (const Touching& c : touching_) {
-      deepest = (std::max)(deepest, c.depth);
-      size2 += c.depth * c.depth;
-    }
+    for (const Touching& c : touching_) deepest = (std::max)(deepest, c.depth), size2 += c.depth * c.depth;
     const float tolerance = static_cast<float>(force.params().tolerance) * std::sqrt(size2);
-    if constexpr (has_friction) move_anchors(before, tool);
+    if constexpr (has_friction) move_anchors(before, X, tool);
     // First those that carry load or came near to it.
     inside_.clear();
     for (std::uint32_t c = 0; c < touching_.size(); ++c) {
@@ -130,10 +134,16 @@ class ResolvedState {
     }
     for (int round = 0;; ++round) {
       build(force, tool);
-      begin_loads(round == 0 ? predicted() : 1.f);
+      begin_loads(tool, round == 0 ? predicted() : 1.f);
       solve_inside(force, friction, tolerance);
       if constexpr (RegularPart::active) regular_.gather([this](std::size_t i) { return load(i); });
-      if (round == most_rounds || !take_in(force, tool, tolerance)) break;
+      if constexpr (Strain::active)
+        strain_.measure(
+            system_, pressure_.q.data(),
+            [this](std::size_t i) -> Vec3<float> { return displacement(i) + given(i); },
+            [this](std::size_t i) -> Vec3<float> { return regular_.of(i) + given(i); });
+      const bool again = Strain::active && first && round == 0;  // the strain was not known
+      if (round == most_rounds || !take_in(force, tool, tolerance, again)) break;
     }
     finish(tool);
     bool all = true;
@@ -147,13 +157,12 @@ class ResolvedState {
 
  private:
   using RegularPart = typename RegularPartOf<Compliance>::type;
+  using Strain = std::conditional_t<RegularPart::active, FiniteStrain, LinearStrain>;
   using Beside = std::conditional_t<(max_beside > 0), LoadsBeside<S>, NoLoadsBeside>;
   /// Points whose gap was less than this share of the depth are solved for at once.
   static constexpr float near = 0.05f;
   /// How often points may come in within a tick.
   static constexpr int most_rounds = 3;
-  /// Bounds predicted(): a tick may change this many times what the last one did, or undo it.
-  static constexpr float most_predicted = 3;
 
   using Point = PointMemory;
   using Touching = TouchingPoint<S>;
@@ -165,7 +174,9 @@ class ResolvedState {
   void forget() noexcept {
     slides_ = false;
     strength_ = {};
-    if constexpr (has_friction) friction_.step = 0;
+    if constexpr (has_friction) friction_.step = 0, carried_.clear();
+    if constexpr (Strain::active) strain_.forget();
+    if constexpr (Beside::active) beside_.set({});
   }
   [[nodiscard]] Point& point(std::size_t i) noexcept { return points_[touching_[inside_[i]].point]; }
 
@@ -180,6 +191,7 @@ class ResolvedState {
       system_.add(relative(at.x), at.m, at.depth, static_cast<float>(tool.area(at.point)));
     }
     system_.build();
+    for (std::size_t i = 0; i < size(); ++i) system_.depth[i] *= strain_.factor();
     if constexpr (RegularPart::active) {
       regular_.clear();
       for (std::size_t i = 0; i < size(); ++i)
@@ -225,22 +237,20 @@ class ResolvedState {
     system_.displace(loads, u);
     if constexpr (RegularPart::active) regular_.add(system_, loads, u);
   }
-  /// How much of what the last tick changed goes on: displacements that go on alike meet the conditions best.
   [[nodiscard]] float predicted() noexcept {
-    float meets = 0, size2 = 0;
+    TickChange change;
     for (std::size_t i = 0; i < size(); ++i) {
       const Point& p = point(i);
       if (!p.loaded) continue;
-      const Vec3<float> m = system_.direction(i);
-      const float lacks = system_.depth[i] - m.dot(p.u), goes = m.dot(p.u_step);
-      meets += lacks * goes, size2 += goes * goes;
-      if (!p.sticks) continue;
-      const Vec3<float> across = tangential<float>(p.u_step, m);
-      meets += across.dot(p.anchor - given(i) - p.u), size2 += across.squaredNorm();
+      change.press(p, system_.direction(i), system_.depth[i]);
+      if constexpr (has_friction) change.hold(p, system_.direction(i), p.anchor - given(i));
     }
-    return size2 > 0 ? clamp(meets / size2, -most_predicted, most_predicted) : 0.f;
+    return change.share();
   }
-  void begin_loads(float share) noexcept {
+  [[nodiscard]] Vec3<float> outward(const ToolPoints<S>& tool, std::size_t i) const noexcept {
+    return (pose_.rotation * tool.vector_areas()[touching_[inside_[i]].point]).template cast<float>();
+  }
+  void begin_loads(const ToolPoints<S>& tool, float share) noexcept {
     for (std::size_t i = 0; i < size(); ++i) {
       const Point& p = point(i);
       const Vec3<float> P = p.load + share * p.load_step, m = system_.direction(i);
@@ -249,6 +259,7 @@ class ResolvedState {
         friction_.load.set(i, P);
         friction_.held[i] = p.loaded ? 1.f : 0.f;
         friction_.anchor.set(i, p.anchor - given(i));
+        friction_.slant[i] = tool.vector_areas().empty() ? 1.f : slant(outward(tool, i), m);
       }
     }
     for (std::size_t i = size(); i < system_.stride(); ++i) {
@@ -257,11 +268,11 @@ class ResolvedState {
     }
   }
 
-  /// Takes in points that the surface has not given way to. False where there are none.
-  bool take_in(const Force& force, const ToolPoints<S>& tool, float tolerance) noexcept {
+  /// Takes in points that the surface has not given way to. False where there are none, and not `again`.
+  bool take_in(const Force& force, const ToolPoints<S>& tool, float tolerance, bool again) noexcept {
     const std::size_t n = size();
     std::size_t next = 0;
-    bool more = false;
+    bool more = again;
     for (std::uint32_t c = 0; c < touching_.size(); ++c) {
       if (next < n && inside_[next] == c) {
         ++next;
@@ -274,14 +285,15 @@ class ResolvedState {
       const Vec3<float> m = system_.direction_at(relative(at.x), at.m);
       const float depth = at.depth / m.dot(at.m);
       const Vec3<S> foot = at.x - (depth * m).template cast<S>();
-      float sunk = system_.normal_displacement_at(pressure_.q.data(), relative(foot), m,
-                                                  static_cast<float>(tool.area(at.point)));
-      if constexpr (Beside::active) sunk += m.dot(beside_.displacement_at(relative(foot), m));
+      float gap = system_.normal_displacement_at(pressure_.q.data(), relative(foot), m,
+                                                 static_cast<float>(tool.area(at.point))) -
+                  strain_.factor() * depth;
+      if constexpr (Beside::active) gap += m.dot(beside_.displacement_at(relative(foot), m));
       if constexpr (RegularPart::active)
-        sunk += regular_.normal_at(force.compliance(), foot.template cast<double>(),
-                                   points_[at.point].triangle, m);
-      p.sunk = sunk - (depth - at.depth);
-      if (sunk - depth < -tolerance / 10) {
+        gap += regular_.normal_at(force.compliance(), foot.template cast<double>(),
+                                  points_[at.point].triangle, m);
+      p.sunk = gap + at.depth;
+      if (gap < -tolerance / 10) {
         inside_.push_back(c);  // sorted below; never beyond the capacity, which is that of touching_
         more = true;
       }
@@ -293,10 +305,11 @@ class ResolvedState {
     return true;
   }
 
-  void move_anchors(const Pose<S>& before, const ToolPoints<S>& tool) noexcept {
+  void move_anchors(const Pose<S>& before, const Pose<S>& now, const ToolPoints<S>& tool) noexcept {
     for (const Touching& c : touching_) {
       Point& p = points_[c.point];
-      if (p.loaded) p.anchor += Vec3<S>(c.x - before * tool.point(c.point)).template cast<float>();
+      const Vec3<S>& x = tool.point(c.point);
+      if (p.loaded) p.anchor += Vec3<S>(now * x - before * x).template cast<float>();
     }
   }
   /// mu of every point: the law's limit of the whole contact over its normal force, of loads q.
@@ -304,18 +317,6 @@ class ResolvedState {
   float coefficient(const Friction& friction, float q) noexcept {
     const S normal = static_cast<S>(q) * per_load_;
     return normal > S(0) ? strength_.coefficient(friction, normal) : 0.f;
-  }
-  // Static strength fades as the tool slides over the surface; points that have just come in do not hold it.
-  void remember_strength(float total, float sticking) noexcept {
-    slides_ = total > 0 && sticking < 0.01f * total;
-    if (!slides_) return strength_.hold(total > 0 ? sticking / total : 1.f);
-    Vec3<float> slip = Vec3<float>::Zero(), stretch = Vec3<float>::Zero();
-    for (std::size_t i = 0; i < size(); ++i) {
-      const Vec3<float> m = system_.direction(i), u = tangential<float>(friction_.u[i], m);
-      if (friction_.held[i] > 0) slip += pressure_.q[i] * (tangential<float>(friction_.anchor[i], m) - u);
-      stretch += pressure_.q[i] * u;
-    }
-    strength_.fade(slip.norm(), stretch.norm());
   }
   [[nodiscard]] Vec3<float> load(std::size_t i) const noexcept {
     if constexpr (has_friction)
@@ -332,6 +333,7 @@ class ResolvedState {
 
   void finish(const ToolPoints<S>& tool) noexcept {
     for (std::size_t i = 0; i < size(); ++i) point(i).go_on(load(i), displacement(i));
+    if constexpr (has_friction) carried_.clear();
     Vec3<float> slope = Vec3<float>::Zero();
     if constexpr (RegularPart::active)
       slope = regular_.slope(system_, pressure_.q.data(), [this](std::size_t i) { return given(i); });
@@ -348,21 +350,26 @@ class ResolvedState {
       const Vec3<float> m = system_.direction(i), n = system_.normal(i);
       if constexpr (has_friction) {
         const float held2 = tangential<float>(p.load, m).squaredNorm(),
-                    limit2 = friction_.mu * q * (friction_.mu * q);
+                    mu = friction_.mu * friction_.slant[i], limit2 = mu * q * (mu * q);
         p.sticks = held2 < slips_from * limit2;
         if (p.sticks) slips = held2 / limit2, sticking += q;
         p.anchor = tangential<float>(
             given(i) + (p.sticks && friction_.held[i] > 0 ? friction_.anchor[i] : friction_.u[i]), m);
         total += q;
+        carried_.add(at.point / static_cast<std::uint32_t>(batch_size), at.x, q, p.anchor,
+                     static_cast<float>(tool.area(at.point)));
       }
-      // The tool feels minus the gradient of the energy: of the depth along the direction of pressing, and of
-      // the regular part as far as the point slips; where it sticks the body goes with it.
-      const Vec3<float> felt = p.load + q * (n / n.dot(m) - m - slips * slope);
-      contacts_.push_back({at.point, p.sticks, at.x, -at.m.template cast<S>(),
+      // The tool feels minus the gradient of the energy as far as the point slips: of the depth along the
+      // direction of pressing, and of the regular part. Where it sticks the body goes with it.
+      const Vec3<float> felt = p.load + slips * q * (n / n.dot(m) - m - slope);
+      contacts_.push_back({at.point, p.sticks, pose_ * tool.point(at.point), -at.m.template cast<S>(),
                            -per_load_ * felt.template cast<S>(),
                            per_load_ * static_cast<S>(q) / tool.area(at.point), static_cast<S>(at.depth)});
     }
-    if constexpr (has_friction) remember_strength(total, sticking);
+    if constexpr (has_friction) {
+      carried_.build();
+      slides_ = strength_.remember(total, sticking, system_, pressure_, friction_);
+    }
   }
 
   std::vector<Point> points_;
@@ -375,6 +382,8 @@ class ResolvedState {
   PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<has_friction, FrictionLists, Absent<4>> friction_;
   PALPATE_NO_UNIQUE_ADDRESS RegularPart regular_;
   PALPATE_NO_UNIQUE_ADDRESS Beside beside_;
+  PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<has_friction, CarriedSurface<S>, StillSurface> carried_;
+  PALPATE_NO_UNIQUE_ADDRESS Strain strain_;
   Residual residual_;
   Pose<S> pose_;
   Vec3<S> origin_;

@@ -4,6 +4,8 @@
 /// @file From static to sliding friction where a whole contact breaks away.
 
 #include <palpate/core/scalar.hpp>
+#include <palpate/resolved/detail/convex_problem.hpp>
+#include <palpate/resolved/detail/point_system.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -22,13 +24,23 @@ class StaticStrength {
     drop_ = held > sliding ? static_cast<float>(1 - sliding / held) : 0.f;
     return static_cast<float>(std::lerp(sliding, held, static_cast<S>(left_)) / normal);
   }
-  /// After a tick in which points stuck that carry this share of the load.
-  void hold(float share) noexcept { left_ = (std::max)(left_, share); }
-  /// After a tick in which the whole contact slid by `slip` and the surface is stretched by `stretch`, any
-  /// unit.
-  void fade(float slip, float stretch) noexcept {
-    const float spring = 2 * drop_ * stretch, whole = spring + slip;
+  /// After a tick with the sum `total` of normal loads, of which `sticking` at points that stick; points that
+  /// have just come in do not hold a contact. Returns whether the whole contact slides.
+  bool remember(float total, float sticking, const PointSystem& system, const PressureLists& pressure,
+                const FrictionLists& friction) noexcept {
+    if (!(total > 0) || sticking >= 0.01f * total) {
+      left_ = (std::max)(left_, total > 0 ? sticking / total : 1.f);
+      return false;
+    }
+    Vec3<float> slip = Vec3<float>::Zero(), stretch = Vec3<float>::Zero();
+    for (std::size_t i = 0; i < system.size(); ++i) {
+      const Vec3<float> m = system.direction(i), u = tangential<float>(friction.u[i], m);
+      if (friction.held[i] > 0) slip += pressure.q[i] * (tangential<float>(friction.anchor[i], m) - u);
+      stretch += pressure.q[i] * u;
+    }
+    const float spring = 2 * drop_ * stretch.norm(), whole = spring + slip.norm();
     if (whole > 0) left_ *= spring / whole;
+    return true;
   }
 
  private:

@@ -33,7 +33,7 @@ struct PointMemory {
 template <Real S>
 struct TouchingPoint {
   std::uint32_t point;  ///< of the tool
-  Vec3<S> x;            ///< object coordinates [m]
+  Vec3<S> x;            ///< where friction has not carried the surface, object coordinates [m]
   Vec3<float> m;        ///< the surface's inward normal
   float depth;          ///< along it [m]
 };

@@ -33,29 +33,34 @@ class ResolvedCollector {
     state.begin_tick();
     const std::span<const Vec3<S>> outward = tool.vector_areas();
     S deepest = S(0);
-    for_each_touching_leaf(
-        tool, X, object,
-        [&](std::uint32_t begin, const PointBatch<S>& x, const PenetrationBatch<S>& in) noexcept {
-          for (std::uint32_t k = 0; k < batch_size; ++k) {
-            if (!(in.depth[k] > S(0))) continue;
-            Vec3<S> m(-in.gradient_x[k], -in.gradient_y[k], -in.gradient_z[k]);
-            const S length = m.norm();
-            if (!(length > S(0))) continue;
-            // What faces away from the body cannot press on it; a wall fades out over some ten degrees, and
-            // is out before it is upright: rounding would bring it in and out.
-            S depth = in.depth[k];
-            if (!outward.empty()) {
-              const Vec3<S>& out = outward[begin + k];
-              const S size = length * out.norm(), facing = (X.rotation * out).dot(m) - S(1e-4L) * size,
-                      whole = S(0.2L) * size;
-              if (!(facing > S(0))) continue;
-              if (facing < whole) depth *= facing / whole;
-            }
-            deepest = (std::max)(deepest, in.depth[k]);
-            if (!state.touch(begin + k, Vec3<S>(x.x[k], x.y[k], x.z[k]), depth, m / length))
-              result.status |= Status::point_overflow;
-          }
-        });
+    const auto touch = [&](std::uint32_t begin, const PointBatch<S>& x,
+                           const PenetrationBatch<S>& in) noexcept {
+      for (std::uint32_t k = 0; k < batch_size; ++k) {
+        if (!(in.depth[k] > S(0))) continue;
+        Vec3<S> m(-in.gradient_x[k], -in.gradient_y[k], -in.gradient_z[k]);
+        const S length = m.norm();
+        if (!(length > S(0))) continue;
+        // What faces away from the body cannot press on it; a wall fades out over some ten degrees, and
+        // is out before it is upright: rounding would bring it in and out.
+        S depth = in.depth[k];
+        if (!outward.empty()) {
+          const Vec3<S>& out = outward[begin + k];
+          const S size = length * out.norm(), facing = (X.rotation * out).dot(m) - S(1e-4L) * size,
+                  whole = S(0.2L) * size;
+          if (!(facing > S(0))) continue;
+          if (facing < whole) depth *= facing / whole;
+        }
+        deepest = (std::max)(deepest, in.depth[k]);
+        if (!state.touch(begin + k, Vec3<S>(x.x[k], x.y[k], x.z[k]), depth, m / length))
+          result.status |= Status::point_overflow;
+      }
+    };
+    if constexpr (has_friction) {
+      const auto before = [&](const PointBatch<S>& x) noexcept { return state.carried().before(x); };
+      for_each_touching_leaf(tool, X, object, touch, before, state.carried().most());
+    } else {
+      for_each_touching_leaf(tool, X, object, touch);
+    }
     const bool was_touching = state.has_contact();
     if (!state.solve(force, friction, tool, X)) result.status |= Status::point_overflow;
     if (!state.has_contact()) return;

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file How far friction has carried the surface along with the tool, by place: so far beside them lay what
+/// the tool's points now touch.
+
+#include <palpate/core/aligned_list.hpp>
+#include <palpate/core/scalar.hpp>
+#include <palpate/geometry/concept.hpp>
+#include <palpate/resolved/detail/vector_list.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace palpate::detail {
+
+/// The mean of the displacements across, a, of loaded points near x, by their pressures q:
+///
+///     s(x) = sum q phi a / max(sum q phi, 0.1 sum q),   phi = (1 + r^2/A)^-2,   |a| <= sqrt(A)
+///
+/// A: the loaded area. One smooth field, for loaded points and for those that are to come in, so that s does
+/// not jump where a point does. It fades some widths beyond the contact.
+template <Real S>
+class CarriedSurface {
+ public:
+  static constexpr bool active = true;
+
+  explicit CarriedSurface(std::size_t capacity) {
+    for (auto* list : {&x_, &a_}) list->resize(padded<VectorList::V>(capacity));
+    weight_.resize(AlignedList<float>::padded(capacity));
+  }
+
+  void clear() noexcept {
+    size_ = 0;
+    total_ = area_ = most_ = 0;
+  }
+  /// A loaded point at x [m], which the surface has followed by a [m], its q [m^2] and its cell [m^2]. Points
+  /// of the same `group` follow each other and lie side by side; they count as one.
+  void add(std::uint32_t group, const Vec3<S>& x, float q, const Vec3<float>& a, float area) noexcept {
+    if (size_ == 0) origin_ = x;
+    if (size_ == 0 || group != group_) {
+      group_ = group;
+      x_.set(size_, Vec3<float>::Zero()), a_.set(size_, Vec3<float>::Zero());
+      weight_[size_++] = 0;
+    }
+    const std::size_t g = size_ - 1;
+    weight_[g] += q;
+    x_.set(g, x_[g] + q * (x - origin_).template cast<float>());
+    a_.set(g, a_[g] + q * a);
+    total_ += q, area_ += area;
+    most_ = (std::max)(most_, a.squaredNorm());
+  }
+  /// After the last add().
+  void build() noexcept {
+    most_ = std::sqrt(most_);
+    const float longest = std::sqrt(area_), share = most_ > longest ? longest / most_ : 1.f;
+    most_ *= share;
+    for (std::size_t g = 0; g < size_; ++g) {
+      x_.set(g, x_[g] / weight_[g]);
+      a_.set(g, share * a_[g]);
+    }
+  }
+
+  /// At least |s| anywhere [m].
+  [[nodiscard]] S most() const noexcept { return static_cast<S>(most_); }
+  /// A leaf of the tool's points over the surface as it lay before.
+  [[nodiscard]] PointBatch<S> before(const PointBatch<S>& now) const noexcept {
+    PointBatch<S> x = now;
+    const Vec3<S> s = at(Vec3<S>(x.x[0], x.y[0], x.z[0])).template cast<S>();
+    for (std::size_t i = 0; i < batch_size; ++i) x.x[i] -= s.x(), x.y[i] -= s.y(), x.z[i] -= s.z();
+    return x;
+  }
+
+ private:
+  [[nodiscard]] Vec3<float> at(const Vec3<S>& x) const noexcept {
+    if (!(most_ > 0)) return Vec3<float>::Zero();
+    const Vec3<float> here = (x - origin_).template cast<float>();
+    Vec3<float> sum = Vec3<float>::Zero();
+    float near = 0;
+    for (std::size_t g = 0; g < size_; ++g) {
+      const float far = 1 + (x_[g] - here).squaredNorm() / area_, phi = 1 / (far * far);
+      sum += phi * a_[g], near += phi * weight_[g];
+    }
+    return sum / (std::max)(near, 0.1f * total_);
+  }
+
+  VectorList x_, a_;           // of groups: mean place, sum of q a
+  AlignedList<float> weight_;  // sum of q
+  Vec3<S> origin_ = Vec3<S>::Zero();
+  std::size_t size_ = 0;
+  std::uint32_t group_ = 0;
+  float total_ = 0, area_ = 0, most_ = 0;
+};
+
+/// Without friction: nowhere.
+struct StillSurface {
+  static constexpr bool active = false;
+  explicit StillSurface(std::size_t /*capacity*/) {}
+};
+
+}  // namespace palpate::detail

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file Second order in depth of a resolved contact: by how much finite strain softens the near field.
+
+#include <palpate/core/scalar.hpp>
+#include <palpate/resolved/detail/point_system.hpp>
+#include <palpate/response/second_order.hpp>
+
+#include <cstddef>
+#include <numbers>
+
+namespace palpate::detail {
+
+/// A pressed ball's near field is softer than linear elasticity's by k d_H/R, k fitted on finite elements
+/// (response/second_order.hpp):
+///
+///     K P (1 + k e) + W P = d,   e = d_H/R = (pi/2 p_0/E')^2,   p_0 = 4/3 p,   p: mean of pressures by load
+///
+/// so e is known of contacts of any shape; of flat ones it is a measure of the same size. The depths are
+/// divided by 1 + k e (K P)/d, at most by 1 +- 1/4, with e and the mean of (K P)/d of the last tick. k is
+/// that of a ball on a flat body; on a convex one the tool's part of the curvature is less: left out.
+class FiniteStrain {
+ public:
+  static constexpr bool active = true;
+
+  explicit FiniteStrain(double nu)
+      : k_(static_cast<float>(SecondOrder{}.at(nu).sphere_softening)),
+        root_of_strain_(
+            static_cast<float>(std::numbers::pi / 2 * (4. / 3) * 2 * std::numbers::pi * (1 - nu))) {}
+
+  void forget() noexcept { softening_ = 0, factor_ = 1; }
+  /// After a solve with the normal loads q: displacement(i) of the points, and what of it is not K P [m].
+  void measure(const PointSystem& system, const float* q, const auto& displacement,
+               const auto& rest) noexcept {
+    float load = 0, pressed = 0, sunk = 0, by_rest = 0;
+    for (std::size_t i = 0; i < system.size(); ++i) {
+      const Vec3<float> m = system.direction(i);
+      load += q[i], pressed += q[i] * q[i] / system.area(i);
+      sunk += q[i] * m.dot(displacement(i)), by_rest += q[i] * m.dot(rest(i));
+    }
+    if (!(load > 0) || !(sunk > 0)) return;
+    const float root = root_of_strain_ * pressed / load;
+    softening_ = clamp(k_ * root * root, -most, most);
+    factor_ = 1 / (1 + softening_ * clamp(1 - by_rest / sunk, 0.f, 1.f));
+  }
+  /// Of the depths.
+  [[nodiscard]] float factor() const noexcept { return factor_; }
+  /// k e
+  [[nodiscard]] float softening() const noexcept { return softening_; }
+
+ private:
+  static constexpr float most = 0.25f;
+  float k_, root_of_strain_;  // p/E' = 2 pi (1 - nu) q/A
+  float softening_ = 0, factor_ = 1;
+};
+
+/// Of a body whose response is linear.
+struct LinearStrain {
+  static constexpr bool active = false;
+  explicit LinearStrain(double /*nu*/) {}
+  [[nodiscard]] static constexpr float softening() noexcept { return 0; }
+  [[nodiscard]] static constexpr float factor() noexcept { return 1; }
+};
+
+}  // namespace palpate::detail

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// What a resolved contact has beyond small displacements: the surface that friction carries along, friction on
+// the tool's slanted surface, finite strain.
+#include <palpate/geometry/box.hpp>
+#include <palpate/geometry/sphere.hpp>
+#include <palpate/law/friction/coulomb.hpp>
+#include <palpate/resolved/contact_samples.hpp>
+#include <palpate/resolved/detail/finite_strain.hpp>
+#include <palpate/solver/contact_solver.hpp>
+
+#include <doctest/doctest.h>
+
+#include <support/check.hpp>
+
+using namespace palpate;
+using namespace palpate::test;
+
+namespace {
+
+using V = Vec3<double>;
+using Elastic = ElasticContact<double, HalfSpace>;
+constexpr double R = 0.015;
+
+/// A ball on a body that is locally a half-space.
+template <class Body>
+auto solver_of(const Body& body, double mu) {
+  return ContactSolver<Body, Elastic, CoulombFriction<double>, ContactPoints<256>>(
+      {.object = body,
+       .tool = ToolPoints<double>(
+           contact_samples(TriangleMesh<double>(Sphere<double>({.radius = R}).mesh(2000)), 0.0012),
+           {.contact_area = 1e-4}),
+       .force = Elastic({.compliance = HalfSpace({.E = 1e6, .nu = 0.5})}),
+       .friction = CoulombFriction<double>({.mu_static = mu, .mu_dynamic = mu})});
+}
+Pose<double> at(double x, double y, double z = 0) {
+  Pose<double> X;
+  X.translation = V(x, y, z);
+  return X;
+}
+
+}  // namespace
+
+TEST_CASE("a contact that sticks takes its surface along: aside of a convex body's top it stays as deep") {
+  // On a sphere of 20 mm, 2 mm aside: the undeformed surface is 57 um farther there, of a depth of 1 mm.
+  auto solver = solver_of(Sphere<double>({.radius = 0.02}), 10);
+  const double top = 0.02 + R;
+  double pressed = 0;
+  for (int i = 1; i <= 100; ++i) pressed = solver.tick(at(0, top - 1e-5 * i)).wrench.force.y();
+  double work = 0, spent = 0;
+  V before = V(0, pressed, 0), x_before(0, top - 1e-3, 0);
+  for (int i = 1; i <= 400; ++i) {
+    const V x(0.002 * std::sin(std::numbers::pi * i / 400), top - 1e-3, 0);
+    const V force = solver.tick(at(x.x(), x.y())).wrench.force;
+    CHECK_RELATIVE(force.y(), pressed, 0.02);  // by the undeformed surface 8 % less
+    const double w = 0.5 * (force + before).dot(x - x_before);
+    work += w, spent += std::abs(w);
+    before = force, x_before = x;
+  }
+  // Nothing slips, so the work is returned; points at the rim slip as they come in and go.
+  CHECK(std::abs(work) <= 0.01 * spent);
+  CHECK_ABSOLUTE(before.x(), 0, 0.01 * pressed);
+}
+
+TEST_CASE("where a ball slides each point has mu times the pressure on the ball's slanted surface") {
+  constexpr double mu = 0.3, deep = 0.003;
+  auto solver = solver_of(Box<double>({.half = V(0.5, 0.5, 0.5), .centre = V(0, -0.5, 0)}), mu);
+  for (int i = 0; i <= 100; ++i) (void)solver.tick(at(0, R - deep * i / 100));
+  double x = 0;
+  for (int i = 1; i <= 300; ++i) (void)solver.tick(at(x = 2e-5 * i, R - deep));
+  REQUIRE(solver.contacts()[0].mode == ContactMode::sliding);
+  double steepest = 1;
+  for (const auto& point : solver.state().points()) {
+    const double q = point.force.dot(point.normal), t = (point.force - q * point.normal).norm(),
+                 cosine = (V(x, R - deep, 0) - point.position).normalized().dot(point.normal);
+    steepest = (std::min)(steepest, cosine);
+    // Points that have just come in have no tractions yet; normals are a cell's mean.
+    if (t > 0) CHECK_RELATIVE(t, mu * q / cosine, 0.005);
+  }
+  CHECK(steepest < 0.95);
+}
+
+TEST_CASE("a ball that slides round in circles hardly needs an iteration: the last tick's change goes on") {
+  // With the share of what goes on from normal displacements alone, which do not change here, 4.
+  auto solver = solver_of(Box<double>({.half = V(0.5, 0.5, 0.5), .centre = V(0, -0.5, 0)}), 0.3);
+  for (int i = 0; i <= 100; ++i) (void)solver.tick(at(0.01, R - 1e-5 * i));
+  int iterations = 0;
+  for (int i = 0; i < 1200; ++i) {
+    const double phi = 0.006 * i;
+    (void)solver.tick(at(0.01 * std::cos(phi), R - 1e-3, 0.01 * std::sin(phi)));
+    if (i >= 200) iterations += solver.state().residual().iterations;
+  }
+  CHECK(iterations <= 1000);
+}
+
+TEST_CASE("finite strain: Hertz's pressure has the strain d/R, and nu turns softer into stiffer") {
+  constexpr float a = 0.004f, ball = 0.015f, width = a / 20;
+  for (const double nu : {0.3, 0.49}) {
+    CAPTURE(nu);
+    detail::PointSystem system(2000, static_cast<float>(1 - 2 * nu), false);
+    std::vector<float> q;
+    system.clear();
+    for (float x = -a; x <= a; x += width)
+      for (float z = -a; z <= a; z += width) {
+        const float s = 1 - (x * x + z * z) / (a * a);
+        if (s <= 0) continue;
+        system.touch(Vec3<float>(x, 0, z), -Vec3<float>::UnitY(), s, width * width, 0);
+        system.add(Vec3<float>(x, 0, z), -Vec3<float>::UnitY(), s, width * width);
+        // p = 2 E' a/(pi R) sqrt(s), q = p A/(4 pi mu), E' = 2 mu/(1 - nu)
+        const float per_modulus = 2 * a / (std::numbers::pi_v<float> * ball) * std::sqrt(s);
+        q.push_back(per_modulus * width * width /
+                    (2 * std::numbers::pi_v<float> * static_cast<float>(1 - nu)));
+      }
+    system.build();
+    detail::FiniteStrain strain(nu);
+    CHECK(strain.factor() == 1);
+    const auto sunk = [](std::size_t) { return Vec3<float>(0, -4, 0); };
+    const auto regular = [](std::size_t) { return Vec3<float>(0, -1, 0); };
+    strain.measure(system, q.data(), sunk, regular);
+    const double e = a * a / (ball * ball), k = SecondOrder{}.at(nu).sphere_softening;
+    CHECK_RELATIVE(strain.softening(), k * e, 0.02);  // 1,257 cells
+    CHECK_RELATIVE(strain.factor(), 1 / (1 + 0.75 * strain.softening()), 1e-6);
+    CHECK((nu < 0.4) == (strain.factor() > 1));
+    strain.forget();
+    CHECK(strain.factor() == 1);
+  }
+}
