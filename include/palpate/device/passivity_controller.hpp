@@ -46,7 +46,9 @@ template <Real S>
 ///     B := min(B, U_most)                                      what friction took is not given back
 ///     sent = s (F, tau),   s the largest in [0, 1] with
 ///       s <= (B' + A)/U_least                                  fade with the energy that the contact stores
-///       s (F . v + tau . w) dt + s^2 (F^2/m + tau^2/I) dt^2 <= B'    no tick spends more than there is
+///       s (F . v + tau . w) T + s^2 (F^2/m + tau^2/I) T^2 <= B'    no tick spends more than there is
+///
+/// with T the usual dt: ticks may be lost.
 ///
 /// Within a contact s rises by dt/0.02 s at most; a new contact begins at 1.
 ///
@@ -82,26 +84,26 @@ class PassivityController {
       return {};
     }
     const Motion moved = advance(stylus, dt), now = velocity();
-    book(moved, now, dt);
+    const S tick = usual_step();
+    book(moved, now, dt, tick);
     budget_ = (std::min)(budget_, stored.most);
 
     Motion v = now;  // of the free arm, when this wrench comes to act
     S left = budget_;
     for (int age = device_.delay; age > 0; --age) {
       const Wrench<S>& flying = sent(age);
-      v.translation += dt / device_.mass * flying.force;
-      v.rotation += dt / device_.inertia * flying.torque;
-      left -= (std::max)(S(0), work(flying, v) * dt);
+      v.translation += tick / device_.mass * flying.force;
+      v.rotation += tick / device_.inertia * flying.torque;
+      left -= (std::max)(S(0), work(flying, v) * tick);
     }
-    const S going_in = (std::max)(S(0), -work(wrench, now) * dt);
+    const S going_in = (std::max)(S(0), -work(wrench, now) * tick);
     const S in_flight = going_in * (static_cast<S>(device_.delay) + S(0.5)) / S(2);
     if (left + in_flight < stored.least) scale_ = (std::max)(S(0), left + in_flight) / stored.least;
-    scale_ = (std::min)(scale_, spends(wrench, v, (std::max)(S(0), left), dt));
+    scale_ = (std::min)(scale_, spends(wrench, v, (std::max)(S(0), left), tick));
     if (stored.most > S(0)) scale_ = (std::min)(scale_, last + dt / recovery);
 
     const Wrench<S> out = scale_ < S(1) ? Wrench<S>{scale_ * wrench.force, scale_ * wrench.torque} : wrench;
-    newest_ = (newest_ + 1) % sent_.size();
-    sent_[newest_] = out;
+    send(out);
     return out;
   }
 
@@ -151,11 +153,12 @@ class PassivityController {
     return {to.translation - from.translation, detail::turned(from.rotation, to.rotation)};
   }
 
-  [[nodiscard]] S shortest_step() const noexcept {
-    S step = time_[pose_];
-    for (std::size_t back = 1; back + 1 < known_; ++back)
-      step = (std::min)(step, time_[(pose_ + window - back) % window]);
-    return step;
+  /// Mean of the steps before the last [s]; the last where there are none. So long the next wrenches will be
+  /// held: the last step alone may have lost ticks, and the force would give way at each of them.
+  [[nodiscard]] S usual_step() const noexcept {
+    S sum = S(0);
+    for (std::size_t back = 1; back + 1 < known_; ++back) sum += time_[(pose_ + window - back) % window];
+    return sum > S(0) ? sum / static_cast<S>(known_ - 2) : time_[pose_];
   }
 
   /// First-order adaptive windowing [janabi2000]: over the longest window in which a line keeps all positions
@@ -180,12 +183,20 @@ class PassivityController {
     return v;
   }
 
-  /// What the hand has put in since the last call; `v`: the velocity now.
-  void book(const Motion& moved, const Motion& v, S dt) noexcept {
+  void send(const Wrench<S>& wrench) noexcept {
+    newest_ = (newest_ + 1) % sent_.size();
+    sent_[newest_] = wrench;
+  }
+
+  /// What the hand has put in since the last call; `v`: the velocity now, `tick`: the usual step.
+  void book(const Motion& moved, const Motion& v, S dt, S tick) noexcept {
     S in = -work(sent(device_.delay + 1), moved);
-    // A step that is longer than others has lost ticks, in which wrenches in flight came to act.
-    if (dt > S(1.5) * shortest_step()) {
-      for (int age = device_.delay; age > 0; --age) in = (std::min)(in, -work(sent(age), moved));
+    // A step that is longer than others has lost ticks, in each of which the newest wrench was sent once more;
+    // what did the work is any of those that came to act.
+    const S ticks = tick > S(0) ? (std::min)(dt / tick, static_cast<S>(sent_.size())) : S(1);
+    for (S last = S(1.5); last <= ticks; last += S(1)) {
+      send(sent(1));
+      in = (std::min)(in, -work(sent(device_.delay + 1), moved));
     }
     const S lost = device_.damping * v.translation.squaredNorm() * dt +
                    device_.rotational_damping * v.rotation.squaredNorm() * dt +
@@ -196,10 +207,10 @@ class PassivityController {
   }
 
   /// The largest s with which the wrench, at the velocity v, does no more work in a tick than `left`.
-  [[nodiscard]] S spends(const Wrench<S>& wrench, const Motion& v, S left, S dt) const noexcept {
-    const S a =
-        (wrench.force.squaredNorm() / device_.mass + wrench.torque.squaredNorm() / device_.inertia) * dt * dt;
-    const S b = work(wrench, v) * dt;
+  [[nodiscard]] S spends(const Wrench<S>& wrench, const Motion& v, S left, S tick) const noexcept {
+    const S a = (wrench.force.squaredNorm() / device_.mass + wrench.torque.squaredNorm() / device_.inertia) *
+                tick * tick;
+    const S b = work(wrench, v) * tick;
     if (a + b <= left) return S(1);
     const S root = std::sqrt(b * b + S(4) * a * left);
     return b > S(0) ? S(2) * left / (b + root) : (root - b) / (S(2) * a);
