@@ -17,6 +17,7 @@
 #include <palpate/resolved/contact_samples.hpp>
 #include <palpate/resolved/response_compliance.hpp>
 #include <palpate/solver/contact_solver.hpp>
+#include <palpate/solver/largest_stiffness.hpp>
 #include <palpate/touch.hpp>
 
 #include <support/hand_scripts.hpp>
@@ -361,6 +362,72 @@ TEST_CASE("stress: with jitter of 30 % or a tick in twenty lost a soft scene doe
           if (play == Play::press) CHECK(felt(f, scene, device) >= 0.9);
         }
   }
+}
+
+// The coupling alone, as stiff as the device answers passively in translation and in rotation, between a hand that
+// taps, slides, twists and rocks and two pins on a surface that the device cannot answer.
+TEST_CASE(
+    "stress: a virtual coupling serves a tool that turns: no hand gains anything, in force and torque") {
+  using Solver = ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>,
+                               Regions<4, AreaSharing>>;
+  using Chain = ServoChain<Solver, VirtualCoupling<double>, Gate<double>, NoPassivityControl<double>>;
+  using Bare = ServoChain<Solver, NoVirtualCoupling<double>, NoLimits<double>, NoPassivityControl<double>>;
+  const PlayGround ground = on(egg, V(0.01, 0.05, 0.005));
+  double without = 0, most_torque = 0;
+  for (const double K : {1000.0, 10000.0}) {
+    Solver solver({.object = egg,
+                   .tool = test::pins(pin_radius, {-8e-3, 8e-3}),
+                   .force = DuffingForce<double>({.c1 = K, .c3 = 1e4 * K}),
+                   .friction = friction,
+                   .contacts = {.distance = 0.4 * pin_radius}});
+    Pose<double> above;
+    above.translation = ground.at + 1e-3 * ground.normal;
+    const auto most = largest_stiffness(
+        solver, Press<double>{.from = above, .along = -ground.normal, .travel = 0.02, .max_force = 8.5});
+    for (const int delay : {0, 1, 2})
+      for (const double grip : {1.0, 0.3})
+        for (const Play play : test::all_plays) {
+          const LoopDevice device = turning(1000, delay);
+          const DeviceModel<double> model = test::model_of(device);
+          const auto through = [&](auto& chain) {
+            solver.reset();
+            return test::play(
+                device, {}, {play, ground, grip},
+                [&](const Pose<double>& X, double dt) { return chain.tick(X, dt).wrench; }, grip);
+          };
+          Bare bare(solver, {.device = model, .has_torque = true});
+          without = (std::max)(without, through(bare).made);
+          typename Chain::Params params{
+              .device = model,
+              .limits =
+                  {.max_force = 8.5, .max_torque = 0.5, .arm_after = 0, .ramp_time = 0, .max_speed = 10},
+              .coupling = {.stiffness = passive_stiffness(model, device.period),
+                           .rotational_stiffness = passive_rotational_stiffness(model, device.period),
+                           .contact_stiffness = most.translation,
+                           .contact_rotational_stiffness = most.rotation},
+              .has_torque = true};
+          params.coupling.centre_of_mass = params.mapping.centre_of_mass = solver.centre_of_mass();
+          Chain chain(solver, params);
+          solver.reset();
+          const PlayFigures f = test::play(
+              device, {}, {play, ground, grip},
+              [&](const Pose<double>& X, double dt) {
+                const Wrench<double> sent = chain.tick(X, dt).wrench;
+                most_torque = (std::max)(most_torque, sent.torque.norm());
+                return sent;
+              },
+              grip);
+          INFO(std::string(test::times_of(play).name), ", K ", K, ", delay ", delay, ", grip ", grip);
+          CHECK(f.made <= f.quantised);
+          CHECK(f.to_hand <= 0);
+          CHECK(f.amplitude <= 2 * device.resolution);
+          CHECK(f.angular_amplitude <= 2 * device.angular_resolution);
+        }
+  }
+  CHECK(without > 0.01);      // J
+  CHECK(most_torque > 0.02);  // N m: over half of 0.3 rad times K_r and the hand in series
+  std::printf("pins through a coupling: torque up to %.3f N m; without it made %.3g mJ\n", most_torque,
+              1e3 * without);
 }
 
 // What is left in the test above is quantisation's: with exact encoders a touch makes nothing, far beyond what

@@ -191,8 +191,8 @@ class PassivityController {
   /// What the hand has put in since the last call; `v`: the velocity now, `tick`: the usual step.
   void book(const Motion& moved, const Motion& v, S dt, S tick) noexcept {
     S in = -work(sent(device_.delay + 1), moved);
-    // A step that is longer than others has lost ticks, in each of which the newest wrench was sent once more;
-    // what did the work is any of those that came to act.
+    // A step that is longer than others has lost ticks, in each of which the newest wrench was sent once
+    // more; what did the work is any of those that came to act.
     const S ticks = tick > S(0) ? (std::min)(dt / tick, static_cast<S>(sent_.size())) : S(1);
     for (S last = S(1.5); last <= ticks; last += S(1)) {
       send(sent(1));

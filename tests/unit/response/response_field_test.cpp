@@ -260,7 +260,7 @@ TEST_CASE("saved and loaded: the same bits; bytes that are not a saved field are
   changed[32 + 24 + 6] = std::byte{1};
   sign();
   CHECK(refused(changed, "lengths"));
-  for (const double length : {0.0, -1.0, 1e6, 1e300, HUGE_VAL, std::nan("")}) {  // after E and nu
+  for (const double length : {0.0, -1.0, 1e-300, 1e6, 1e300, HUGE_VAL, std::nan("")}) {  // after E and nu
     changed = bytes;
     std::memcpy(changed.data() + 32 + 16, &length, 8);
     sign();
@@ -291,6 +291,13 @@ TEST_CASE("saved and loaded: the same bits; bytes that are not a saved field are
         sign();
         CHECK(refused(changed, "not a triangle's"));
       }
+      for (const int length : {48, 56})  // size and spacing: squares of them are divided by
+        for (const double x : {0.0, 5e-324, 1e-20, 1e20, HUGE_VAL}) {
+          changed = bytes;
+          std::memcpy(changed.data() + at + 8 + length, &x, 8);
+          sign();
+          CHECK(refused(changed, "not a triangle's"));
+        }
     } else if (size == sizeof(PatchTable::Own) || size == sizeof(PatchTable::Second) ||
                size == sizeof(PatchTable::Moments)) {
       for (const float x : {1e38f, HUGE_VALF, std::nanf("")}) {

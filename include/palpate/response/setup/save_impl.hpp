@@ -193,11 +193,13 @@ PALPATE_COMPILED_INLINE ResponseField load_response_field(std::span<const std::b
   };
   // Of a body of 1e-6 m numbers in 1/m^2 reach 1e17; what is larger by far leaves float's range in a sum.
   const auto is_moderate = [](double e) { return is_within(e, 0x1p60); };
+  const auto is_length = [&](double e) { return e >= 0x1p-60 && is_moderate(e); };  // squares are divided by
   const char* too_large = "a table is not finite, or too large";
   const std::size_t n = vertices.size() / 3, k = nodes.size();
   require(in.at_end() && vertices.size() == 3 * n && n >= 4 && k >= 1 && !parts.triangles.empty(),
           "the lists' lengths are not a field's");
-  require(is_finite(parts.E) && parts.E > 0 && parts.nu >= 0 && parts.nu <= 0.5 && parts.mesh.length > 0 &&
+  require(is_within(parts.E, 0x1p100) && parts.E >= 0x1p-100 && parts.nu >= 0 && parts.nu <= 0.5 &&
+              is_length(parts.mesh.length) &&
               parts.mesh.length < 1e6,  // as contacts are; a longer reach gets to what stands for no edge
           "E, nu or length is out of range");
   require(
@@ -251,7 +253,7 @@ PALPATE_COMPILED_INLINE ResponseField load_response_field(std::span<const std::b
                         {s.part[0], s.part[1], s.part[2]},
                         s.crease != 0};
     require(s.triangle < parts.mesh.triangles.size() && is_moderate(node.normal.norm()) &&
-                is_moderate(node.source.norm()) && is_moderate(s.size) && is_moderate(s.spacing) &&
+                is_moderate(node.source.norm()) && is_length(s.size) && is_length(s.spacing) &&
                 is_moderate(node.part.norm()),
             "a node is not a triangle's");
     parts.nodes.push_back(node);
