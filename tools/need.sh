@@ -61,6 +61,6 @@ build() {
     export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS-pch_defines,time_macros}
   fi
   echo "Configuring build/$preset"
-  cmake --preset "$preset" >build/configure.log 2>&1 || { cat build/configure.log >&2; return 1; }
+  cmake --preset "$preset" >"build/$preset.log" 2>&1 || { cat "build/$preset.log" >&2; return 1; }
   cmake --build "build/$preset" --parallel "$(nproc)" --target "$@"
 }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace palpate::detail {
@@ -50,23 +51,22 @@ class Unloaded {
   constexpr float rim_pressure = 0.8f;
   constexpr float neighbours2 = 2.25f;  // of a cell's area: between first and second neighbours
   const float* const q = lists.q.data();
-  float* const at_rim = lists.y.data();
+  float* const rim = lists.y.data();  // of a cell at the rim: its pressure^(2/3); of another: more than any
   float whole = 0, load = 0, count = 0;
   for (std::size_t i = 0; i < system.size(); ++i) {
     if (!(q[i] > 0)) continue;
-    at_rim[i] = unloaded.is_near(system.position(i), neighbours2 * system.area(i)) ? 1.f : 0.f;
-    whole += system.area(i), load += q[i], count += 1;
+    const float area = system.area(i), pressure = q[i] / area;
+    rim[i] = unloaded.is_near(system.position(i), neighbours2 * area) ? std::cbrt(pressure * pressure)
+                                                                      : std::numeric_limits<float>::max();
+    whole += area, load += q[i], count += 1;
   }
   float sum = whole;
   for (int round = 0; round < 3 && count > 0; ++round) {  // a and p_mean are of the area that is sought
     const float width = std::sqrt(std::numbers::pi_v<float> * whole / (count * sum)),  // h / a
-        full = rim_pressure * std::sqrt(2 * width) * load / sum;
+        full = rim_pressure * std::sqrt(2 * width) * load / sum, per_full = 1 / std::cbrt(full * full);
     sum = 0;
-    for (std::size_t i = 0; i < system.size(); ++i) {
-      if (!(q[i] > 0)) continue;
-      const float part = q[i] / (system.area(i) * full);
-      sum += system.area(i) * (at_rim[i] > 0 ? (std::min)(std::cbrt(part * part), 1.f) : 1.f);
-    }
+    for (std::size_t i = 0; i < system.size(); ++i)
+      if (q[i] > 0) sum += system.area(i) * (std::min)(per_full * rim[i], 1.f);
   }
   return sum;
 }

@@ -16,6 +16,7 @@
 #include <palpate/resolved/detail/vector_list.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -188,6 +189,15 @@ class PointSystem {
  private:
   [[nodiscard]] static std::size_t first_of(std::size_t j) noexcept { return j / V::size() * V::size(); }
 
+  // 0 up to lane k, then 1.
+  [[nodiscard]] static V after(std::size_t k) noexcept {
+    alignas(64) static constexpr auto steps = [] {
+      std::array<float, 2 * V::size()> out{};
+      for (std::size_t i = V::size(); i < out.size(); ++i) out[i] = 1;
+      return out;
+    }();
+    return V(&steps[V::size() - 1 - k]);
+  }
   // Directions, depths along them, and feet.
   void direct() noexcept {
     for (std::size_t i = 0; i < size_; ++i) per_width_[i] = 1 / std::sqrt(area_[i]);
@@ -220,10 +230,11 @@ class PointSystem {
     const Vec3<float> x = x_[j];
     const SimdVec3<V> m = each(m_[j]);
     const float area = area_[j];
-    float* const first = to;
-    for (std::size_t i = first_of(j); i < stride_; i += V::size(), to += entries * V::size()) {
+    V keep = after(j - first_of(j));  // all of K is a multiple of 1/r
+    for (std::size_t i = first_of(j); i < stride_; i += V::size(), to += entries * V::size(), keep = V(1.f)) {
       const SimdVec3<V> mi = m_.load(i);
-      const PointPair<V> p = between(i, x, mi, m, area);
+      PointPair<V> p = between(i, x, mi, m, area);
+      p.inverse *= keep;
       if constexpr (entries == 1) {
         dot(mi, pushed(b_, p, m)).copy_to(to);
       } else {
@@ -240,8 +251,6 @@ class PointSystem {
         put(2, 0, zx + turn.y), put(0, 2, zx - turn.y);
       }
     }
-    for (std::size_t i = first_of(j); i <= j; ++i)
-      for (std::size_t k = 0; k < entries; ++k) first[k * V::size() + i - first_of(j)] = 0;
     return to;
   }
 
