@@ -76,6 +76,7 @@
 #include <palpate/resolved/contact_points.hpp>
 #include <palpate/resolved/elastic_contact.hpp>
 #include <palpate/resolved/contact_samples.hpp>
+#include <palpate/resolved/resolution.hpp>
 
 // solver: one tick
 #include <palpate/solver/contact_solver.hpp>

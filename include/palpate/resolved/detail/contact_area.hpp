@@ -57,7 +57,7 @@ class Unloaded {
     if (!(q[i] > 0)) continue;
     const float area = system.area(i), pressure = q[i] / area;
     rim[i] = unloaded.is_near(system.position(i), neighbours2 * area) ? std::cbrt(pressure * pressure)
-                                                                      : std::numeric_limits<float>::max();
+                                                                      : (std::numeric_limits<float>::max)();
     whole += area, load += q[i], count += 1;
   }
   float sum = whole;
