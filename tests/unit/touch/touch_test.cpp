@@ -192,8 +192,9 @@ TEST_CASE("touch, a cylinder's end pressed flat: the field's disc") {
     touch.reset();
     const auto felt = touch.tick(at(V(0.005, 0.06 - depth, 0.005)), 1e-3);
     MESSAGE("depth ", depth, ": felt ", felt.wrench.force.y(), " N, field ", -asked.y());
-    // The field's disc has the second order in depth, 1.5 % at 4 mm; the points have not.
-    CHECK_RELATIVE(felt.wrench.force.y(), -asked.y(), depth < 0.003 ? 0.005 : 0.02);
+    // Of first order they agree within 0.3 %. Each has a second order of its own, the points 0.5, 1.2 and 3.5 %,
+    // the disc 1.5 % at 4 mm, most of its radius.
+    CHECK_RELATIVE(felt.wrench.force.y(), -asked.y(), depth < 0.003 ? 0.015 : 0.03);
     REQUIRE(felt.contacts.size() == 1);
     V sum = V::Zero();
     for (const PointContact<double>& point : felt.points) {

@@ -7,6 +7,7 @@
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/response/second_order.hpp>
 
+#include <cmath>
 #include <cstddef>
 #include <numbers>
 
@@ -17,9 +18,10 @@ namespace palpate::detail {
 ///
 ///     K P (1 + k e) + W P = d,   e = d_H/R = (pi/2 p_0/E')^2,   p_0 = 4/3 p,   p: mean of pressures by load
 ///
-/// so e is known of contacts of any shape; of flat ones it is a measure of the same size. The depths are
-/// divided by 1 + k e (K P)/d, at most by 1 +- 1/4, with e and the mean of (K P)/d of the last tick. k is
-/// that of a ball on a flat body; on a convex one the tool's part of the curvature is less: left out.
+/// so e is known of contacts of any shape; of flat ones it is a measure of the same size. Deeper than k was
+/// fitted it is bounded: e/sqrt(1 + e^2). The depths are divided by 1 + k e (K P)/d, with e and the mean of
+/// (K P)/d of the last tick. k is that of a ball on a flat body; on a convex one the tool's part of the
+/// curvature is less: left out.
 class FiniteStrain {
  public:
   static constexpr bool active = true;
@@ -40,8 +42,8 @@ class FiniteStrain {
       sunk += q[i] * m.dot(displacement(i)), by_rest += q[i] * m.dot(rest(i));
     }
     if (!(load > 0) || !(sunk > 0)) return;
-    const float root = root_of_strain_ * pressed / load;
-    softening_ = clamp(k_ * root * root, -most, most);
+    const float root = root_of_strain_ * pressed / load, e = root * root;
+    softening_ = k_ * e / std::sqrt(1 + e * e);
     factor_ = 1 / (1 + softening_ * clamp(1 - by_rest / sunk, 0.f, 1.f));
   }
   /// Of the depths.
@@ -50,7 +52,6 @@ class FiniteStrain {
   [[nodiscard]] float softening() const noexcept { return softening_; }
 
  private:
-  static constexpr float most = 0.25f;
   float k_, root_of_strain_;  // p/E' = 2 pi (1 - nu) q/A
   float softening_ = 0, factor_ = 1;
 };
