@@ -149,10 +149,6 @@ class DuffingForce {
     if (p_.c3 == S(0)) return force / p_.c1;
     // Above 3/4 of F_max (chosen) the distance to the fold has more digits than D.
     if (p_.c3 < S(0) && force > S(0.75) * max_force_) return depth_near_fold(force);
-    // The products below may exceed F a little; halved coefficients have the same root.
-    if (force > (std::numeric_limits<S>::max)() / S(2)) {
-      return DuffingForce({p_.c1 / S(2), p_.c3 / S(2)}, Known{}).depth(force / S(2));
-    }
     // D = D0 y with a y + b y^3 = 1. D0 is the min of the roots of the linear and of the cubic law alone, the
     // cubic one within 3.2 %. The root y lies in [0.66, 1.14], a and b are of order 1 at most, and the fitted
     // polynomials below are within 2.7 % of it. Two of Halley's steps, of cubic convergence, do the rest. a
@@ -167,8 +163,10 @@ class DuffingForce {
       start = (std::min)(start, cubic);
     }
     if (!(start > S(0) && start <= (std::numeric_limits<S>::max)())) return start;  // out of the range
-    const S a = p_.c1 * start / force;
-    const S b = p_.c3 * start * start * start / force;
+    // Products may exceed F a little; halved coefficients have the same root.
+    const S half = force > (std::numeric_limits<S>::max)() / S(2) ? S(0.5) : S(1), F = half * force;
+    const S a = half * p_.c1 * start / F;
+    const S b = half * p_.c3 * start * start * start / F;
     S y = linear ? S(1.0103) + b * (S(-0.8353) + b * (S(0.8643) - b * S(0.3541)))  // a = 1
                  : (S(0.9979) - S(0.319) * a) * (S(1) - (b - S(1)) / S(3));        // b = 1
     constexpr int steps = std::numeric_limits<S>::digits > 53 ? 3 : 2;
