@@ -346,7 +346,7 @@ TEST_CASE("stress: with the chain no hand gains anything from any scene, and not
 }
 
 // A host that is not a real-time one: periods that jitter, ticks that never come. A lost tick must not make the
-// force give way, nor the controller take one wrench for another.
+// force drop, nor the controller take one wrench for another.
 TEST_CASE("stress: with jitter of 30 % or a tick in twenty lost a soft scene does not buzz") {
   for (const double K : {500.0, 1000.0}) {
     const Scene scene = point_on_block(K);

@@ -154,7 +154,7 @@ class PassivityController {
   }
 
   /// Mean of the steps before the last [s]; the last where there are none. So long the next wrenches will be
-  /// held: the last step alone may have lost ticks, and the force would give way at each of them.
+  /// held: the last step alone may have lost ticks, and the force would drop at each of them.
   [[nodiscard]] S usual_step() const noexcept {
     S sum = S(0);
     for (std::size_t back = 1; back + 1 < known_; ++back) sum += time_[(pose_ + window - back) % window];

@@ -12,6 +12,7 @@
 
 #include <support/bowl.hpp>
 #include <support/check.hpp>
+#include <support/on_half_space.hpp>
 #include <support/paths.hpp>
 
 using namespace palpate;
@@ -20,21 +21,12 @@ using namespace palpate::test;
 namespace {
 
 using V = Vec3<double>;
-using Elastic = ElasticContact<double, HalfSpace>;
 template <FrictionLaw F>
-using Solver = ContactSolver<Box<double>, Elastic, F, ContactPoints<512>>;
+using Solver = OnHalfSpace<F>;
 
-constexpr double pi = std::numbers::pi, E = 1e6, nu = 0.5, E_plane = E / (1 - nu * nu),
+constexpr double pi = std::numbers::pi, E = half_space_E, nu = half_space_nu, E_plane = E / (1 - nu * nu),
                  G = E / (2 * (1 + nu));
 
-template <FrictionLaw F = Frictionless<double>>
-Solver<F> solver_of(const MeshData<double>& tool, double spacing, F friction = {}) {
-  return Solver<F>({.object = Box<double>({.half = V(0.5, 0.5, 0.5), .centre = V(0, -0.5, 0)}),
-                    .tool = ToolPoints<double>(contact_samples(TriangleMesh<double>(tool), spacing),
-                                               {.contact_area = 1e-4}),
-                    .force = Elastic({.compliance = HalfSpace({.E = E, .nu = nu})}),
-                    .friction = friction});
-}
 Pose<double> at(double y, double turn = 0) {
   Pose<double> X;
   X.translation = V(0, y, 0);
@@ -84,7 +76,7 @@ TEST_CASE("elliptic contact 1:1, 2:1, 5:1, 10:1: Hertz's force within 2 % with 5
     for (const double points : {50., 100.}) {
       CAPTURE(ratio);
       CAPTURE(points);
-      Solver<Frictionless<double>> solver = solver_of(tool, std::sqrt(pi * a * b / points));
+      Solver<Frictionless<double>> solver = on_half_space(tool, std::sqrt(pi * a * b / points));
       CHECK_RELATIVE(solver.tick(at(-depth)).wrench.force.y(), force, 0.02);
       CHECK(loaded(solver) > 0.8 * points);
       CHECK(loaded(solver) < 1.5 * points);  // whole cells, three of them across the narrowest contact
@@ -97,8 +89,8 @@ TEST_CASE("a cone: Sneddon's force within 1 % with 68 points") {
   //   d = pi/2 a s,   F = pi/2 E' a^2 s = 2/pi E' d^2/s.     Measured: 0.2 %.
   const double slope = 0.1, a = 2e-3, depth = pi / 2 * a * slope;
   Solver<Frictionless<double>> solver =
-      solver_of(bowl(1.25 * a, 1.25 * a, [&](double x, double z) { return slope * std::hypot(x, z); }),
-                a * std::sqrt(pi / 60));
+      on_half_space(bowl(1.25 * a, 1.25 * a, [&](double x, double z) { return slope * std::hypot(x, z); }),
+                    a * std::sqrt(pi / 60));
   CHECK_RELATIVE(solver.tick(at(-depth)).wrench.force.y(), 2 / pi * E_plane * depth * depth / slope, 0.01);
   CHECK(loaded(solver) > 60);
   CHECK(loaded(solver) < 75);
@@ -112,8 +104,8 @@ TEST_CASE(
   const double a = 0.005, d = 2e-4, half = 0.004, turn = 0.01;
   for (const double spacing : {0.3 * a, 0.24 * a}) {
     Solver<CoulombFriction<double>> disc =
-        solver_of(Cylinder<double>({.radius = a, .half_height = half}).mesh(4000), spacing,
-                  CoulombFriction<double>({.mu_static = 20, .mu_dynamic = 20}));
+        on_half_space(Cylinder<double>({.radius = a, .half_height = half}).mesh(4000), spacing,
+                      CoulombFriction<double>({.mu_static = 20, .mu_dynamic = 20}));
     (void)disc.tick(at(half - d));
     const double torque = -disc.tick(at(half - d, turn)).wrench.torque.y();
     for (const auto& point : disc.state().points()) CHECK(point.sticks);
@@ -128,8 +120,8 @@ TEST_CASE("a ball that is turned slips from the rim inwards: Lubkin's torque wit
   // equation). At c = 0: 3 pi/16 mu P a.   Measured: -1.6 to 1.4 % with 39 points.
   const double R = 0.015, mu = 0.3, d = 0.001, a = std::sqrt(R * d);
   Solver<CoulombFriction<double>> solver =
-      solver_of(Sphere<double>({.radius = R}).mesh(2000), 0.0012,
-                CoulombFriction<double>({.mu_static = mu, .mu_dynamic = mu}));
+      on_half_space(Sphere<double>({.radius = R}).mesh(2000), 0.0012,
+                    CoulombFriction<double>({.mu_static = mu, .mu_dynamic = mu}));
   double P = 0;
   for (int i = 1; i <= 100; ++i) P = solver.tick(at(R - d * i / 100)).wrench.force.y();
   const double p0 = 3 * P / (2 * pi * a * a), limit = 3 * pi / 16 * mu * P * a;

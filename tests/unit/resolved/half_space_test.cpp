@@ -13,6 +13,7 @@
 #include <support/check.hpp>
 #include <support/joined.hpp>
 #include <support/no_heap.hpp>
+#include <support/on_half_space.hpp>
 #include <support/paths.hpp>
 
 #include <cstring>
@@ -25,19 +26,10 @@ namespace {
 using V = Vec3<double>;
 using Elastic = ElasticContact<double, HalfSpace>;
 template <FrictionLaw F = Frictionless<double>>
-using Solver = ContactSolver<Box<double>, Elastic, F, ContactPoints<256>>;
+using Solver = OnHalfSpace<F>;
 
-constexpr double E = 1e6, nu = 0.5, E_plane = E / (1 - nu * nu);
-const Box<double> ground({.half = V(0.5, 0.5, 0.5), .centre = V(0, -0.5, 0)});  // its top is y = 0
+constexpr double E = half_space_E, nu = half_space_nu, E_plane = E / (1 - nu * nu);
 
-template <FrictionLaw F = Frictionless<double>>
-Solver<F> solver_of(const MeshData<double>& tool, double spacing, F friction = {}) {
-  return Solver<F>({.object = ground,
-                    .tool = ToolPoints<double>(contact_samples(TriangleMesh<double>(tool), spacing),
-                                               {.contact_area = 1e-4}),
-                    .force = Elastic({.compliance = HalfSpace({.E = E, .nu = nu})}),
-                    .friction = friction});
-}
 Pose<double> at(double x, double y, double z = 0) {
   Pose<double> X;
   X.translation = V(x, y, z);
@@ -52,7 +44,7 @@ double sphere_force(double d) { return rigid_sphere_force(R, d, E_plane); }
 
 TEST_CASE("a ball: the exact sphere's force within 1 % with 30 to 130 points in contact") {
   // Measured: 0.7 % at most.
-  Solver<> solver = solver_of(ball, 0.0012);
+  Solver<> solver = on_half_space(ball, 0.0012);
   std::size_t least = 1000, most = 0;
   for (int i = 1; i <= 400; ++i) {
     const double d = 1e-5 * i;
@@ -70,7 +62,7 @@ TEST_CASE("a ball: the exact sphere's force within 1 % with 30 to 130 points in 
 
 TEST_CASE("a ball: the contact's area within 8 % with 20 points or more, 2 % in the mean of places") {
   // Measured at single places, by how the rim falls among the cells: -7.7 to +3.7 %.
-  Solver<> solver = solver_of(ball, 0.0012);
+  Solver<> solver = on_half_space(ball, 0.0012);
   double mean = 0;
   constexpr int places = 60;
   for (int i = 0; i < places; ++i) {
@@ -99,7 +91,7 @@ TEST_CASE("flat punches 1:1 to 20:1 and a disc: force within 1 %, the moment of 
     CAPTURE(c.length / c.width);
     const double area = c.length * c.width, d = 1e-5, tilt = 0.5 * d / c.length;
     Solver<> solver =
-        solver_of(Box<double>({.half = V(c.length / 2, 0.004, c.width / 2)}).mesh(24), c.spacing);
+        on_half_space(Box<double>({.half = V(c.length / 2, 0.004, c.width / 2)}).mesh(24), c.spacing);
     CHECK_RELATIVE(solver.tick(at(0, 0.004 - d)).wrench.force.y(), c.force * E_plane * std::sqrt(area) * d,
                    0.01);
     Pose<double> X = at(0, 0.004 - d);
@@ -108,7 +100,7 @@ TEST_CASE("flat punches 1:1 to 20:1 and a disc: force within 1 %, the moment of 
     CHECK(solver.state().points().size() < 70);
   }
   const double a = 0.005, d = 1e-5;
-  Solver<> disc = solver_of(Cylinder<double>({.radius = a, .half_height = 0.004}).mesh(4000), 0.24 * a);
+  Solver<> disc = on_half_space(Cylinder<double>({.radius = a, .half_height = 0.004}).mesh(4000), 0.24 * a);
   CHECK_RELATIVE(disc.tick(at(0, 0.004 - d)).wrench.force.y(), 2 * E_plane * a * d, 0.01);
 }
 
@@ -116,7 +108,7 @@ TEST_CASE(
     "partial slip: Cattaneo's and Mindlin's force within 2 % of the limit, and breakaway without a jump") {
   const double mu = 0.3;
   Solver<CoulombFriction<double>> solver =
-      solver_of(ball, 0.0012, CoulombFriction<double>({.mu_static = mu, .mu_dynamic = mu}));
+      on_half_space(ball, 0.0012, CoulombFriction<double>({.mu_static = mu, .mu_dynamic = mu}));
   const double d = 0.001, a = std::sqrt(R * d);
   double F = 0, before = 0;
   for (int i = 1; i <= 100; ++i) F = solver.tick(at(0, R - d * i / 100)).wrench.force.y();
@@ -140,7 +132,7 @@ TEST_CASE(
 TEST_CASE("where a ball breaks away friction falls no faster than it rose, to the sliding limit") {
   constexpr double step = 1e-6, deep = 1e-3, stuck_after = 1e-4;
   Solver<CoulombFriction<double>> solver =
-      solver_of(ball, 0.0012, CoulombFriction<double>({.mu_static = 0.4, .mu_dynamic = 0.3}));
+      on_half_space(ball, 0.0012, CoulombFriction<double>({.mu_static = 0.4, .mu_dynamic = 0.3}));
   for (int i = 0; i <= 100; ++i) (void)solver.tick(at(0, R - deep * i / 100));
   double before = 0, rise = 0, fall = 0, most = 0, normal = 0;
   for (int i = 1; i <= 1500; ++i) {
@@ -161,7 +153,7 @@ TEST_CASE("where a ball breaks away friction falls no faster than it rose, to th
 
 TEST_CASE("a ball that sticks does not creep: after 20,000 ticks to and fro the force is what it was") {
   Solver<CoulombFriction<double>> solver =
-      solver_of(ball, 0.0016, CoulombFriction<double>({.mu_static = 2, .mu_dynamic = 2}));
+      on_half_space(ball, 0.0016, CoulombFriction<double>({.mu_static = 2, .mu_dynamic = 2}));
   for (int i = 1; i <= 100; ++i) (void)solver.tick(at(0, R - 1e-5 * i));
   const auto play = [&] {
     TickResult<double> last{};
@@ -179,7 +171,7 @@ TEST_CASE("two balls on one tool feel each other's dent as point forces far apar
   const double apart = 0.06, d = 5e-4;
   MeshData<double> both;
   for (const double side : {-1., 1.}) append(both, ball, V(side * apart / 2, 0, 0));
-  Solver<> solver = solver_of(both, 0.0012);
+  Solver<> solver = on_half_space(both, 0.0012);
   const double F = solver.tick(at(0, R - d)).wrench.force.y() / 2;
   // Each is less deep by the other's F/(pi E' r).
   double expected = sphere_force(d);
@@ -217,7 +209,7 @@ TEST_CASE("around a box's edge the force is continuous, and does not depend on t
 
 TEST_CASE("a tick takes no heap, the same poses give the same bits, and bad poses no force") {
   const auto make = [] {
-    return solver_of(ball, 0.0016, CoulombFriction<double>({.mu_static = 0.4, .mu_dynamic = 0.3}));
+    return on_half_space(ball, 0.0016, CoulombFriction<double>({.mu_static = 0.4, .mu_dynamic = 0.3}));
   };
   auto first = make(), second = make();
   const HeapCount heap;
@@ -251,7 +243,7 @@ TEST_CASE("a tick takes no heap, the same poses give the same bits, and bad pose
 
 TEST_CASE("more points than the topology holds are left out, and said") {
   ContactSolver<Box<double>, Elastic, Frictionless<double>, ContactPoints<8>> solver(
-      {.object = ground,
+      {.object = ground(),
        .tool =
            ToolPoints<double>(contact_samples(TriangleMesh<double>(ball), 0.0016), {.contact_area = 1e-4}),
        .force = Elastic({.compliance = HalfSpace({.E = E, .nu = nu})})});

@@ -10,6 +10,7 @@
 
 #include <reference/rigid_sphere.hpp>
 #include <support/check.hpp>
+#include <support/on_half_space.hpp>
 #include <support/paths.hpp>
 
 #include <random>
@@ -20,16 +21,7 @@ using namespace palpate::test;
 namespace {
 
 using V = Vec3<double>;
-using Elastic = ElasticContact<double, HalfSpace>;
-constexpr double E = 1e6, nu = 0.5, R = 0.015;
-
-auto solver_of(const MeshData<double>& tool, double spacing) {
-  return ContactSolver<Box<double>, Elastic, Frictionless<double>, ContactPoints<512>>(
-      {.object = Box<double>({.half = V(0.5, 0.5, 0.5), .centre = V(0, -0.5, 0)}),
-       .tool =
-           ToolPoints<double>(contact_samples(TriangleMesh<double>(tool), spacing), {.contact_area = 1e-4}),
-       .force = Elastic({.compliance = HalfSpace({.E = E, .nu = nu})})});
-}
+constexpr double E = half_space_E, nu = half_space_nu, R = 0.015;
 
 }  // namespace
 
@@ -38,7 +30,7 @@ TEST_CASE(
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> unit(-1, 1);
   const MeshData<double> ball = Sphere<double>({.radius = R}).mesh(4000);
-  auto solver = solver_of(ball, 0.002);
+  auto solver = on_half_space(ball, 0.002);
   double largest = 0, estimated = 0, least = 1;
   int poses = 0;
   while (poses < 400) {
@@ -66,7 +58,7 @@ TEST_CASE(
 TEST_CASE("a narrow contact counts by the points across it, turned either way") {
   // 4:1 with two rows, against a square with as many points.
   const auto estimate = [](double length, double width, double spacing) {
-    auto solver = solver_of(Box<double>({.half = V(length / 2, 0.004, width / 2)}).mesh(24), spacing);
+    auto solver = on_half_space(Box<double>({.half = V(length / 2, 0.004, width / 2)}).mesh(24), spacing);
     Pose<double> X;
     X.translation = V(0, 0.004 - 1e-5, 0);
     X.rotation = rotation_about<double>(V::UnitY(), 0.4);
@@ -83,7 +75,7 @@ TEST_CASE("a narrow contact counts by the points across it, turned either way") 
 TEST_CASE("the spacing for an error: a ball then has that error or less") {
   const double d = 0.0015, a = rigid_sphere_radius(R, d), error = 0.01;
   const double spacing = spacing_for(std::numbers::pi * a * a, error);
-  auto solver = solver_of(Sphere<double>({.radius = R}).mesh(4000), spacing);
+  auto solver = on_half_space(Sphere<double>({.radius = R}).mesh(4000), spacing);
   Pose<double> X;
   X.translation = V(0, R - d, 0);
   CHECK_RELATIVE(solver.tick(X).wrench.force.y(), rigid_sphere_force(R, d, E / (1 - nu * nu)), error);

@@ -11,6 +11,7 @@
 #include <doctest/doctest.h>
 
 #include <support/check.hpp>
+#include <support/on_half_space.hpp>
 
 using namespace palpate;
 using namespace palpate::test;
@@ -18,19 +19,13 @@ using namespace palpate::test;
 namespace {
 
 using V = Vec3<double>;
-using Elastic = ElasticContact<double, HalfSpace>;
 constexpr double R = 0.015;
 
-/// A ball on a body that is locally a half-space.
-template <class Body>
-auto solver_of(const Body& body, double mu) {
-  return ContactSolver<Body, Elastic, CoulombFriction<double>, ContactPoints<256>>(
-      {.object = body,
-       .tool = ToolPoints<double>(
-           contact_samples(TriangleMesh<double>(Sphere<double>({.radius = R}).mesh(2000)), 0.0012),
-           {.contact_area = 1e-4}),
-       .force = Elastic({.compliance = HalfSpace({.E = 1e6, .nu = 0.5})}),
-       .friction = CoulombFriction<double>({.mu_static = mu, .mu_dynamic = mu})});
+/// A ball on the half-space, or on a body as compliant.
+template <class Body = Box<double>>
+auto ball_on(double mu, const Body& body = ground()) {
+  return on_half_space(Sphere<double>({.radius = R}).mesh(2000), 0.0012,
+                       CoulombFriction<double>({.mu_static = mu, .mu_dynamic = mu}), body);
 }
 Pose<double> at(double x, double y, double z = 0) {
   Pose<double> X;
@@ -42,7 +37,7 @@ Pose<double> at(double x, double y, double z = 0) {
 
 TEST_CASE("a contact that sticks takes its surface along: aside of a convex body's top it stays as deep") {
   // On a sphere of 20 mm, 2 mm aside: the undeformed surface is 57 um farther there, of a depth of 1 mm.
-  auto solver = solver_of(Sphere<double>({.radius = 0.02}), 10);
+  auto solver = ball_on(10, Sphere<double>({.radius = 0.02}));
   const double top = 0.02 + R;
   double pressed = 0;
   for (int i = 1; i <= 100; ++i) pressed = solver.tick(at(0, top - 1e-5 * i)).wrench.force.y();
@@ -63,7 +58,7 @@ TEST_CASE("a contact that sticks takes its surface along: aside of a convex body
 
 TEST_CASE("where a ball slides each point has mu times the pressure on the ball's slanted surface") {
   constexpr double mu = 0.3, deep = 0.003;
-  auto solver = solver_of(Box<double>({.half = V(0.5, 0.5, 0.5), .centre = V(0, -0.5, 0)}), mu);
+  auto solver = ball_on(mu);
   for (int i = 0; i <= 100; ++i) (void)solver.tick(at(0, R - deep * i / 100));
   double x = 0;
   for (int i = 1; i <= 300; ++i) (void)solver.tick(at(x = 2e-5 * i, R - deep));
@@ -81,7 +76,7 @@ TEST_CASE("where a ball slides each point has mu times the pressure on the ball'
 
 TEST_CASE("a ball that slides round in circles hardly needs an iteration: the last tick's change goes on") {
   // With the share of what goes on from normal displacements alone, which do not change here, 4.
-  auto solver = solver_of(Box<double>({.half = V(0.5, 0.5, 0.5), .centre = V(0, -0.5, 0)}), 0.3);
+  auto solver = ball_on(0.3);
   for (int i = 0; i <= 100; ++i) (void)solver.tick(at(0.01, R - 1e-5 * i));
   int iterations = 0;
   for (int i = 0; i < 1200; ++i) {

@@ -25,8 +25,6 @@ namespace palpate::detail {
 template <Real S>
 class CarriedSurface {
  public:
-  static constexpr bool active = true;
-
   explicit CarriedSurface(std::size_t capacity) {
     for (auto* list : {&x_, &a_}) list->resize(padded<VectorList::V>(capacity));
     weight_.resize(AlignedList<float>::padded(capacity));
@@ -96,7 +94,6 @@ class CarriedSurface {
 
 /// Without friction: nowhere.
 struct StillSurface {
-  static constexpr bool active = false;
   explicit StillSurface(std::size_t /*capacity*/) {}
 };
 
