@@ -36,13 +36,17 @@ Vector random_vector(std::mt19937_64& random, int n) {
   return q;
 }
 
+/// M(i, j) as the solver asks for it.
+auto entries(const Matrix& M) {
+  return [&M](std::size_t i, std::size_t j) { return M(Eigen::Index(i), Eigen::Index(j)); };
+}
+
 template <std::size_t N = 64>
 Vector solved(const Matrix& M, const Vector& q, bool& ok) {
   std::array<double, N> b{}, x{};
   const auto n = static_cast<std::size_t>(q.size());
   for (std::size_t i = 0; i < n; ++i) b[i] = q[Eigen::Index(i)];
-  ok = solve_complementarity<N>(
-      [&M](std::size_t i, std::size_t j) { return M(Eigen::Index(i), Eigen::Index(j)); }, b, n, x);
+  ok = solve_complementarity<N>(entries(M), b, n, x);
   return Eigen::Map<const Vector>(x.data(), q.size());
 }
 
@@ -145,11 +149,11 @@ TEST_CASE(
   M << 1, 0.9, 0.9, 1;  // the second row is within the first one's dent
   for (const double size : {1e-30, 1e-7, 1.0, 1e20}) {
     std::array<double, 2> x{7, 7};
-    CHECK(solve_complementarity(M, std::array<double, 2>{size, 0.5 * size}, 2, x));
+    CHECK(solve_complementarity(entries(M), std::array<double, 2>{size, 0.5 * size}, 2, x));
     CHECK_RELATIVE(x[0], size, 1e-15);
     CHECK(x[1] == 0);
     x = {7, 7};
-    CHECK(solve_complementarity(M, std::array<double, 2>{size, -size}, 2, x));
+    CHECK(solve_complementarity(entries(M), std::array<double, 2>{size, -size}, 2, x));
     CHECK(x[1] == 0);
   }
 }
