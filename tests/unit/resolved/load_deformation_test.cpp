@@ -148,3 +148,12 @@ TEST_CASE("loads that are not finite or too many are left out and reported; a mi
   for (const V& x : drawing.at) CHECK(x.allFinite());
   CHECK_THROWS_WITH_AS(Shape(nullptr, mesh), "ResponseLoadDeformation: needs a response field", SetupError);
 }
+
+TEST_CASE("without loads no part of the body is near one") {
+  detail::LoadField sum(*field(), 4);
+  sum.add_up(std::span<const SurfaceLoad<double>>{});
+  const auto& near = sum.drawn().contact[0].near;
+  CHECK(near.activation == 0);
+  CHECK(near.a == 0);
+  CHECK(sum.drawn().contact[0].displacement2() == 0);
+}

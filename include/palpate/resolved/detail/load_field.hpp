@@ -132,14 +132,16 @@ class LoadField {
     used_.clear();
     const LoadMesh& mesh = field_->load_mesh();
     const double per_load = 1 / (4 * std::numbers::pi * field_->shear_modulus());
-    Vec3<double> low = Vec3<double>::Constant(1e30), high = -low;
+    drawn_.near = {.activation = 0};
+    if (loads.empty()) return;
+    Vec3<double> low = loads[0].position.template cast<double>(), high = low;
     for (std::size_t i = 0; i < loads.size(); ++i) {
       const SurfaceLoad<S>& load = loads[i];
       const Vec3<double> x = load.position.template cast<double>(),
                          f = load.force.template cast<double>() / field_->shear_modulus();
       low = low.cwiseMin(x), high = high.cwiseMax(x);
       const LoadPosition position = mesh.locate(x);
-      FixedVector<NodeWeight, place_nodes, Spare::undefined> nodes;
+      FixedVector<NodeWeight, LoadMesh::most_beneath, Spare::undefined> nodes;
       add_position(mesh, position, nodes);
       const double share = regular_share(position, mean_of(&LoadNode::size, *field_, position));
       double carried = 0;

@@ -106,9 +106,10 @@ class MidEdgeCorrection {
       for (const std::uint32_t edge : edges) store(&value[4 * edge], Simd4{});
       edges.clear();
       constexpr std::uint32_t four = Simd4::size();
-      for (std::uint32_t e = 0; e < share.size(); e += four) {
+      const auto count = static_cast<std::uint32_t>(value.size() / four);
+      for (std::uint32_t e = 0; e < count; e += four) {
         if (!(reduce_max(Simd4(&share[e])) > 0)) continue;
-        for (std::uint32_t k = e; k < e + four; ++k)
+        for (std::uint32_t k = e; k < (std::min)(e + four, count); ++k)
           if (share[k] > 0) edges.push_back(k);
       }
     }
