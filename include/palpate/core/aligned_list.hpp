@@ -22,14 +22,10 @@ class AlignedList {
   }
 
   void resize(std::size_t size) { lines_.resize(padded(size) / entries_in_line); }
-  [[nodiscard]] S* data() noexcept { return lines_.empty() ? nullptr : lines_.front().entry; }
-  [[nodiscard]] const S* data() const noexcept { return lines_.empty() ? nullptr : lines_.front().entry; }
-  [[nodiscard]] S& operator[](std::size_t i) noexcept {
-    return lines_[i / entries_in_line].entry[i % entries_in_line];
-  }
-  [[nodiscard]] const S& operator[](std::size_t i) const noexcept {
-    return lines_[i / entries_in_line].entry[i % entries_in_line];
-  }
+  [[nodiscard]] S* data() noexcept { return reinterpret_cast<S*>(lines_.data()); }
+  [[nodiscard]] const S* data() const noexcept { return reinterpret_cast<const S*>(lines_.data()); }
+  [[nodiscard]] S& operator[](std::size_t i) noexcept { return data()[i]; }
+  [[nodiscard]] const S& operator[](std::size_t i) const noexcept { return data()[i]; }
 
  private:
   static constexpr std::size_t line = 64, entries_in_line = line / sizeof(S),

@@ -14,6 +14,8 @@
 #include <support/paths.hpp>
 #include <support/response_fields.hpp>
 
+#include <random>
+
 using namespace palpate;
 using namespace palpate::test;
 
@@ -97,3 +99,30 @@ TEST_CASE("without friction a closed path gives no energy: pressed, rolled over 
 }
 
 TEST_CASE("a field that is missing is refused") { CHECK_THROWS_AS(ResponseCompliance(nullptr), SetupError); }
+
+TEST_CASE("points in the prisms over a load mesh are where LoadMesh::locate() has them") {
+  const LoadMesh& mesh = field()->load_mesh();
+  const detail::LoadPrisms prisms(mesh);
+  using W = detail::LoadPrisms::V;
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  int elsewhere = 0;
+  for (int k = 0; k < 500; ++k) {
+    const V direction = V(uniform(random), uniform(random), uniform(random)).normalized(),
+            x = (1 + 0.1 * uniform(random)) * direction.cwiseProduct(V(0.06, 0.04, 0.04));
+    const LoadPosition exact = mesh.locate(x, mesh.locate(x).triangle);
+    std::array<std::uint32_t, W::size()> triangle{};  // the first one may, by chance, be the right one
+    triangle[0] = exact.triangle;
+    const auto at = prisms.locate(detail::each((x - prisms.centre()).cast<float>()), triangle);
+    REQUIRE(at.found[0] > 0);
+    CHECK_ABSOLUTE(at.q[0], exact.weight.y(), 1e-5);  // the least weight that counts as inside
+    CHECK_ABSOLUTE(at.r[0], exact.weight.z(), 1e-5);
+    double size = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+      size += exact.weight[Eigen::Index(c)] * mesh.nodes()[exact.node[c]].size;
+    const double far2 = exact.distance2 / (size * size);
+    CHECK_ABSOLUTE(at.far2[0], far2, 1e-4 * (far2 + 1e-3));
+    if (exact.triangle != 0) elsewhere += at.found[1] == 0;
+  }
+  CHECK(elsewhere > 480);  // all but those beside the first triangle
+}

@@ -108,9 +108,16 @@ TEST_CASE("finite strain: Hertz's pressure has the strain d/R, and nu turns soft
     system.build();
     detail::FiniteStrain strain(nu);
     CHECK(strain.factor() == 1);
-    const auto sunk = [](std::size_t) { return Vec3<float>(0, -4, 0); };
-    const auto regular = [](std::size_t) { return Vec3<float>(0, -1, 0); };
-    strain.measure(system, q.data(), sunk, regular);
+    // Points sink by 4, of which the regular part is 1.
+    q.resize(system.stride());
+    std::vector<float> r(system.stride());
+    detail::VectorList regular;
+    regular.resize(system.stride());
+    for (std::size_t i = 0; i < system.size(); ++i) {
+      r[i] = 4 - system.depth[i];
+      regular.set(i, -Vec3<float>::UnitY());
+    }
+    strain.measure(system, q.data(), r.data(), regular, detail::NoLoadsBeside(0, 0, 0));
     const double e = a * a / (ball * ball), k = SecondOrder{}.at(nu).sphere_softening;
     CHECK_RELATIVE(strain.softening(), k * e / std::sqrt(1 + e * e), 0.02);  // 1,257 cells
     CHECK_RELATIVE(strain.factor(), 1 / (1 + 0.75 * strain.softening()), 1e-6);

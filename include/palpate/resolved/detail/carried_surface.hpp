@@ -25,8 +25,10 @@ namespace palpate::detail {
 template <Real S>
 class CarriedSurface {
  public:
+  using V = VectorList::V;
+
   explicit CarriedSurface(std::size_t capacity) {
-    for (auto* list : {&x_, &a_}) list->resize(padded<VectorList::V>(capacity));
+    for (auto* list : {&x_, &a_}) list->resize(padded<V>(capacity));
     weight_.resize(AlignedList<float>::padded(capacity));
   }
 
@@ -59,6 +61,10 @@ class CarriedSurface {
       x_.set(g, x_[g] / weight_[g]);
       a_.set(g, share * a_[g]);
     }
+    for (std::size_t g = size_; g < padded<V>(size_); ++g) {
+      for (auto* list : {&x_, &a_}) list->set(g, Vec3<float>::Zero());
+      weight_[g] = 0;
+    }
   }
 
   /// At least |s| anywhere [m].
@@ -74,14 +80,16 @@ class CarriedSurface {
  private:
   [[nodiscard]] Vec3<float> at(const Vec3<S>& x) const noexcept {
     if (!(most_ > 0)) return Vec3<float>::Zero();
-    const Vec3<float> here = (x - origin_).template cast<float>();
-    Vec3<float> sum = Vec3<float>::Zero();
-    float near = 0;
-    for (std::size_t g = 0; g < size_; ++g) {
-      const float far = 1 + (x_[g] - here).squaredNorm() / area_, phi = 1 / (far * far);
-      sum += phi * a_[g], near += phi * weight_[g];
+    const SimdVec3<V> here = each(Vec3<float>((x - origin_).template cast<float>()));
+    const V one(1.f), per_area(1 / area_);
+    SimdVec3<V> sum{};
+    V near{};
+    for (std::size_t g = 0; g < size_; g += V::size()) {
+      const SimdVec3<V> r = x_.load(g) - here;
+      const V far = one + dot(r, r) * per_area, phi = one / (far * far);
+      sum += phi * a_.load(g), near += phi * V(&weight_[g]);
     }
-    return sum / (std::max)(near, 0.1f * total_);
+    return Vec3<float>(reduce(sum.x), reduce(sum.y), reduce(sum.z)) / (std::max)(reduce(near), 0.1f * total_);
   }
 
   VectorList x_, a_;           // of groups: mean place, sum of q a

@@ -3,10 +3,10 @@
 
 /// @file The area of a resolved contact.
 
+#include <palpate/core/simd_math.hpp>
 #include <palpate/resolved/detail/convex_problem.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -48,25 +48,31 @@ class Unloaded {
 /// +2 % in the mean of places). Overwrites y of the lists.
 [[nodiscard]] inline float contact_area(const PointSystem& system, PressureLists& lists,
                                         const Unloaded& unloaded) noexcept {
+  using V = Unloaded::V;
   constexpr float rim_pressure = 0.8f;
   constexpr float neighbours2 = 2.25f;  // of a cell's area: between first and second neighbours
+  const V zero(0.f), one(1.f), most((std::numeric_limits<float>::max)()),
+      tiny((std::numeric_limits<float>::min)());
   const float* const q = lists.q.data();
   float* const rim = lists.y.data();  // of a cell at the rim: its pressure^(2/3); of another: more than any
-  float whole = 0, load = 0, count = 0;
-  for (std::size_t i = 0; i < system.size(); ++i) {
-    if (!(q[i] > 0)) continue;
-    const float area = system.area(i), pressure = q[i] / area;
-    rim[i] = unloaded.is_near(system.position(i), neighbours2 * area) ? std::cbrt(pressure * pressure)
-                                                                      : (std::numeric_limits<float>::max)();
-    whole += area, load += q[i], count += 1;
+  for (std::size_t i = 0; i < system.size(); ++i)
+    rim[i] = q[i] > 0 && unloaded.is_near(system.position(i), neighbours2 * system.area(i)) ? 1.f : 0.f;
+  V wholes{}, loads{}, counts{};
+  for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+    const V qi(q + i), area = select(qi > zero, V(system.areas() + i), zero);
+    const V pressure = (max)(qi / V(system.areas() + i), tiny);
+    select(V(rim + i) > zero, exp2(V(2.f / 3) * log2(pressure)), most).copy_to(rim + i);
+    wholes += area, loads += qi, counts += select(qi > zero, one, zero);
   }
+  const float whole = reduce(wholes), load = reduce(loads), count = reduce(counts);
   float sum = whole;
   for (int round = 0; round < 3 && count > 0; ++round) {  // a and p_mean are of the area that is sought
     const float width = std::sqrt(std::numbers::pi_v<float> * whole / (count * sum)),  // h / a
         full = rim_pressure * std::sqrt(2 * width) * load / sum, per_full = 1 / std::cbrt(full * full);
-    sum = 0;
-    for (std::size_t i = 0; i < system.size(); ++i)
-      if (q[i] > 0) sum += system.area(i) * (std::min)(per_full * rim[i], 1.f);
+    V sums{};
+    for (std::size_t i = 0; i < system.stride(); i += V::size())
+      sums += select(V(q + i) > zero, V(system.areas() + i) * (min)(V(per_full) * V(rim + i), one), zero);
+    sum = reduce(sums);
   }
   return sum;
 }

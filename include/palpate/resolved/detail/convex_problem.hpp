@@ -36,6 +36,14 @@ struct Residual {
   float relative = 0;  ///< norm of what violates them, over the norm of the depths
 };
 
+/// Loads P on the body and displacements u, by which a solve ends, sized at set-up.
+struct LoadLists {
+  VectorList load, u;
+  void resize(std::size_t size) {
+    for (auto* list : {&load, &u}) list->resize(size);
+  }
+};
+
 /// Lists of a solve, sized at set-up.
 struct PressureLists {
   AlignedList<float> q, r, p, y;
@@ -100,26 +108,27 @@ template <class Apply>
 /// A point slips from this share of its limit on, both squared: rounding of a load on its cone is below.
 inline constexpr float slips_from = 0.9999f;
 
-/// What presses on the tool's surface, of outward normal `outward` (any length), over its part along m: at
-/// most 2.
-[[nodiscard]] inline float slant(const Vec3<float>& outward, const Vec3<float>& m) noexcept {
-  return 1 / clamp(outward.dot(m) / outward.norm(), 0.5f, 1.f);
+/// What presses on the tool's surface, of unit outward normal, over its part along m: at most 2.
+template <class V>
+[[nodiscard]] PALPATE_INLINE V slant(const SimdVec3<V>& outward, const SimdVec3<V>& m) noexcept {
+  return V(1.f) / clamp(dot(outward, m), 0.5f, 1.f);
 }
 
 /// Squared: what is along a slip, over the slip, by rounding alone. Where a tool lifts off as it slides, the
 /// slip is a thousand times the depth.
 inline constexpr float rounding2 = 4e-12f;
 
-/// Lists of a solve with friction, sized at set-up. Vectors: loads P on the body, displacements u, where
-/// points that stick hold the surface, a, and what an iteration changes.
-struct FrictionLists {
-  VectorList load, u, anchor, load_step, u_step;
+/// The same of a solve with friction: where points that stick hold the surface, a, and what an iteration
+/// changes.
+struct FrictionLists : LoadLists {
+  VectorList anchor, load_step, u_step;
   AlignedList<float> held;   ///< 1 where the point has an anchor, 0 where it has just come in: no tractions
   AlignedList<float> slant;  ///< pressure on the tool's slanted surface over its part along m
   float step = 0;            ///< the last tick's last; 0: none [1/m]
   float mu = 0;              ///< of the result
   void resize(std::size_t size) {
-    for (auto* list : {&load, &u, &anchor, &load_step, &u_step}) list->resize(size);
+    LoadLists::resize(size);
+    for (auto* list : {&anchor, &load_step, &u_step}) list->resize(size);
     for (auto* list : {&held, &slant}) list->resize(size);
   }
 };

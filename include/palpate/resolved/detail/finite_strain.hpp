@@ -24,6 +24,7 @@ namespace palpate::detail {
 /// curvature is less: left out.
 class FiniteStrain {
  public:
+  using V = VectorList::V;
   static constexpr bool active = true;
 
   explicit FiniteStrain(double nu)
@@ -32,15 +33,19 @@ class FiniteStrain {
             static_cast<float>(std::numbers::pi / 2 * (4. / 3) * 2 * std::numbers::pi * (1 - nu))) {}
 
   void forget() noexcept { softening_ = 0, factor_ = 1; }
-  /// After a solve with the normal loads q: displacement(i) of the points, and what of it is not K P [m].
-  void measure(const PointSystem& system, const float* q, const auto& displacement,
-               const auto& rest) noexcept {
-    float load = 0, pressed = 0, sunk = 0, by_rest = 0;
-    for (std::size_t i = 0; i < system.size(); ++i) {
-      const Vec3<float> m = system.direction(i);
-      load += q[i], pressed += q[i] * q[i] / system.area(i);
-      sunk += q[i] * m.dot(displacement(i)), by_rest += q[i] * m.dot(rest(i));
+  /// After a solve with the normal loads q: r, displacements along the directions of pressing less the
+  /// depths; w, the regular part, and `given`, by others' loads, both of which are not K P [m].
+  void measure(const PointSystem& system, const float* q, const float* r, const VectorList& w,
+               const auto& given) noexcept {
+    V loads{}, pressures{}, sunks{}, rests{};
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+      const V qi(q + i), beside = dot(system.directions().load(i), given.load(i));
+      loads += qi, pressures += qi * qi / V(system.areas() + i);
+      sunks += qi * (V(r + i) + V(&system.depth[i]) + beside);
+      rests += qi * (dot(system.directions().load(i), w.load(i)) + beside);
     }
+    const float load = reduce(loads), pressed = reduce(pressures), sunk = reduce(sunks),
+                by_rest = reduce(rests);
     if (!(load > 0) || !(sunk > 0)) return;
     const float root = root_of_strain_ * pressed / load, e = root * root;
     softening_ = k_ * e / std::sqrt(1 + e * e);

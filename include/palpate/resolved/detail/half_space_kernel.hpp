@@ -31,13 +31,22 @@ template <class V>
   return {inverse, inverse * r, V(0.5f) * (mi + mj)};
 }
 
-/// K_ij f.
+/// j seen from i.
 template <class V>
-[[nodiscard]] PALPATE_INLINE SimdVec3<V> pushed(float b, const PointPair<V>& p,
-                                                const SimdVec3<V>& f) noexcept {
+[[nodiscard]] PALPATE_INLINE PointPair<V> reversed(const PointPair<V>& p) noexcept {
+  return {p.inverse, V(-1.f) * p.e, p.m};
+}
+
+/// u + K_ij f. `coupled`: false if b = 0.
+template <bool coupled = true, class V>
+[[nodiscard]] PALPATE_INLINE SimdVec3<V> pushed(float b, const PointPair<V>& p, const SimdVec3<V>& f,
+                                                const SimdVec3<V>& u) noexcept {
   const V along = dot(p.e, f);
-  return (V(1 + b) * p.inverse) * f + (p.inverse * (V(1 - b) * along - V(b) * dot(p.m, f))) * p.e +
-         (p.inverse * V(b) * along) * p.m;
+  if constexpr (!coupled)
+    return u + p.inverse * f + (p.inverse * along) * p.e;
+  else
+    return u + (V(1 + b) * p.inverse) * f + (p.inverse * (V(1 - b) * along - V(b) * dot(p.m, f))) * p.e +
+           (p.inverse * V(b) * along) * p.m;
 }
 
 }  // namespace palpate::detail

@@ -82,17 +82,17 @@ class LoadsBeside {
       system.depth[i] -= sunk < 0 ? share * sunk : sunk;
     }
   }
-  /// Displacement of point i of the tick by them [m].
-  [[nodiscard]] Vec3<float> given(std::size_t i) const noexcept {
-    return size_ > 0 ? given_[i] : Vec3<float>::Zero();
+  /// Displacements of points i .. on of the tick by them [m].
+  [[nodiscard]] PALPATE_INLINE SimdVec3<V> load(std::size_t i) const noexcept {
+    return size_ > 0 ? given_.load(i) : SimdVec3<V>{};
   }
 
   /// The half-space's displacement at x by all of them; m: the direction of pressing there [m].
   [[nodiscard]] Vec3<float> displacement_at(const Vec3<float>& x, const Vec3<float>& m) const noexcept {
-    SimdVec3<V> sum{V(0.f), V(0.f), V(0.f)};
+    SimdVec3<V> sum{};
     for (std::size_t i = 0; i < size_; i += V::size())
-      sum +=
-          pushed(b_, point_pair(each<V>(x) - x_.load(i), each<V>(m), m_.load(i), V(&area_[i])), P_.load(i));
+      sum = pushed(b_, point_pair(each<V>(x) - x_.load(i), each<V>(m), m_.load(i), V(&area_[i])), P_.load(i),
+                   sum);
     return {reduce(sum.x), reduce(sum.y), reduce(sum.z)};
   }
 
@@ -110,6 +110,7 @@ class LoadsBeside {
 struct NoLoadsBeside {
   static constexpr bool active = false;
   NoLoadsBeside(std::size_t, std::size_t, float) {}
+  [[nodiscard]] PALPATE_INLINE static SimdVec3<VectorList::V> load(std::size_t) noexcept { return {}; }
 };
 
 }  // namespace palpate::detail

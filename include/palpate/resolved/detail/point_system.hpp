@@ -39,8 +39,7 @@ class PointSystem {
     const std::size_t padded = AlignedList<float>::padded(capacity);
     for (auto* list : {&depth, &area_, &per_width_, &group_weight_, &back_}) list->resize(padded);
     for (auto* list : {&m_, &x_at_, &x_, &n_, &group_x_, &group_n_, &backs_}) list->resize(padded);
-    matrix_.resize((has_friction ? 9 : 1) * capacity *
-                   (capacity / 2 + 2 * V::size()));  // columns, each rounded up
+    if (!has_friction) matrix_.resize(capacity * (capacity / 2 + 2 * V::size()));  // columns, each rounded up
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
@@ -76,14 +75,16 @@ class PointSystem {
     area_[size_++] = area;
   }
   [[nodiscard]] const VectorList& directions() const noexcept { return m_; }  ///< of pressing
+  [[nodiscard]] const VectorList& normals() const noexcept { return n_; }     ///< inward
+  [[nodiscard]] const VectorList& feet() const noexcept { return x_; }
+  [[nodiscard]] const float* areas() const noexcept { return area_.data(); }
   [[nodiscard]] Vec3<float> direction(std::size_t i) const noexcept { return m_[i]; }
-  [[nodiscard]] Vec3<float> normal(std::size_t i) const noexcept { return n_[i]; }
   [[nodiscard]] Vec3<float> position(std::size_t i) const noexcept { return x_at_[i]; }
   [[nodiscard]] float area(std::size_t i) const noexcept { return area_[i]; }
   /// Where the load of point i acts on the undeformed surface.
   [[nodiscard]] Vec3<float> foot(std::size_t i) const noexcept { return x_[i]; }
 
-  /// Directions, depths along them, and the matrix of all points.
+  /// Directions, depths along them, and without friction the matrix of all points.
   void build() noexcept {
     stride_ = padded<V>(size_);
     for (std::size_t i = size_; i < stride_; ++i) {
@@ -91,8 +92,9 @@ class PointSystem {
       depth[i] = 0;
     }
     direct();
+    if (has_friction_) return;
     float* to = matrix_.data();
-    for (std::size_t j = 0; j < size_; ++j) to = has_friction_ ? column<9>(j, to) : column<1>(j, to);
+    for (std::size_t j = 0; j < size_; ++j) to = b_ != 0 ? column<true>(j, to) : column<false>(j, to);
   }
 
   /// u = K q, both along the directions of pressing. Precondition: no friction; zeros beyond size().
@@ -113,34 +115,18 @@ class PointSystem {
     }
     for (std::size_t i = 0; i < stride_; i += V::size()) (V(u + i) + V(&back_[i])).copy_to(u + i);
   }
-  /// u = K P. Precondition: friction; zeros beyond size().
+  /// u = K P. Precondition: friction; zeros beyond size(). The entries of K, nine for a pair, are not kept: a
+  /// tick needs few products, and reading them takes longer than making them.
   void displace(const VectorList& P, VectorList& u) noexcept {
     const V along(own_cell * (1 + b_)), across(own_cell * (1.5f + b_ / 2));
     for (std::size_t i = 0; i < stride_; i += V::size()) {
       const SimdVec3<V> m = m_.load(i), load = P.load(i), cell = V(&per_width_[i]) * load;
       u.store(i, across * cell + ((along - across) * dot(m, cell)) * m);
     }
-    const float* k = matrix_.data();
-    for (std::size_t j = 0; j < size_; ++j) {
-      const SimdVec3<V> own = each(P[j]);
-      SimdVec3<V> back{V(0.f), V(0.f), V(0.f)};
-      for (std::size_t i = first_of(j); i < stride_; i += V::size(), k += 9 * V::size()) {
-        const auto K = [k](std::size_t row, std::size_t col)
-                           PALPATE_INLINE_LAMBDA { return V(k + (3 * row + col) * V::size()); };
-        const SimdVec3<V> other = P.load(i);
-        SimdVec3<V> sum = u.load(i);
-        const V xx = K(0, 0), yy = K(1, 1), zz = K(2, 2), xy = K(0, 1), yx = K(1, 0), xz = K(0, 2),
-                zx = K(2, 0), yz = K(1, 2), zy = K(2, 1);
-        sum.x += xx * own.x + xy * own.y + xz * own.z;
-        sum.y += yx * own.x + yy * own.y + yz * own.z;
-        sum.z += zx * own.x + zy * own.y + zz * own.z;
-        back.x += xx * other.x + yx * other.y + zx * other.z;
-        back.y += xy * other.x + yy * other.y + zy * other.z;
-        back.z += xz * other.x + yz * other.y + zz * other.z;
-        u.store(i, sum);
-      }
-      backs_.set(j, {reduce(back.x), reduce(back.y), reduce(back.z)});
-    }
+    if (b_ != 0)
+      add_pairs<true>(P, u);
+    else
+      add_pairs<false>(P, u);
     for (std::size_t i = 0; i < stride_; i += V::size()) u.store(i, u.load(i) + backs_.load(i));
   }
   /// Of the tangential over the normal response, all over the contact.
@@ -154,7 +140,7 @@ class PointSystem {
     V sum{};
     for (std::size_t i = 0; i < stride_; i += V::size()) {
       const SimdVec3<V> mi = m_.load(i);
-      sum += V(q + i) * dot(mi, pushed(b_, between(i, x, mi, each(n), area), each(n)));
+      sum += V(q + i) * dot(mi, pushed(b_, between(i, x, mi, each(n), area), each(n), {}));
     }
     return reduce(sum);
   }
@@ -214,6 +200,7 @@ class PointSystem {
       x_.set(i, apart());
       m_.set(i, Vec3<float>::Zero());
       per_width_[i] = 0;
+      area_[i] = 1;
     }
   }
 
@@ -223,35 +210,38 @@ class PointSystem {
                                                     float area) const noexcept {
     return point_pair(x_.load(i) - each(x), mi, m, V(area));
   }
-  // Column j of the matrix, of what is at and below the diagonal, to `to`; by entries in each register's
-  // rows: one along the directions of pressing, or nine. Returns its end.
-  template <std::size_t entries>
+  // Column j of the matrix, of what is at and below the diagonal, to `to`. Returns its end.
+  template <bool coupled>
   float* column(std::size_t j, float* to) noexcept {
     const Vec3<float> x = x_[j];
     const SimdVec3<V> m = each(m_[j]);
     const float area = area_[j];
     V keep = after(j - first_of(j));  // all of K is a multiple of 1/r
-    for (std::size_t i = first_of(j); i < stride_; i += V::size(), to += entries * V::size(), keep = V(1.f)) {
+    for (std::size_t i = first_of(j); i < stride_; i += V::size(), to += V::size(), keep = V(1.f)) {
       const SimdVec3<V> mi = m_.load(i);
       PointPair<V> p = between(i, x, mi, m, area);
       p.inverse *= keep;
-      if constexpr (entries == 1) {
-        dot(mi, pushed(b_, p, m)).copy_to(to);
-      } else {
-        const auto put = [to](std::size_t row, std::size_t col, const V& K)
-                             PALPATE_INLINE_LAMBDA { K.copy_to(to + (3 * row + col) * V::size()); };
-        const V even = V(1 + b_) * p.inverse;
-        const SimdVec3<V> by_e = (V(1 - b_) * p.inverse) * p.e, turn = cross(p.m, (V(b_) * p.inverse) * p.e);
-        const V xy = by_e.x * p.e.y, yz = by_e.y * p.e.z, zx = by_e.z * p.e.x;
-        put(0, 0, even + by_e.x * p.e.x);
-        put(1, 1, even + by_e.y * p.e.y);
-        put(2, 2, even + by_e.z * p.e.z);
-        put(0, 1, xy + turn.z), put(1, 0, xy - turn.z);
-        put(1, 2, yz + turn.x), put(2, 1, yz - turn.x);
-        put(2, 0, zx + turn.y), put(0, 2, zx - turn.y);
-      }
+      dot(mi, pushed<coupled>(b_, p, m, {})).copy_to(to);
     }
     return to;
+  }
+  // u_i += K_ij P_j of all i > j; what these do to j, to backs_.
+  template <bool coupled>
+  void add_pairs(const VectorList& P, VectorList& u) noexcept {
+    for (std::size_t j = 0; j < size_; ++j) {
+      const Vec3<float> x = x_[j];
+      const SimdVec3<V> m = each(m_[j]), own = each(P[j]);
+      const float area = area_[j];
+      SimdVec3<V> back{};
+      V keep = after(j - first_of(j));
+      for (std::size_t i = first_of(j); i < stride_; i += V::size(), keep = V(1.f)) {
+        PointPair<V> p = between(i, x, m_.load(i), m, area);
+        p.inverse *= keep;
+        u.store(i, pushed<coupled>(b_, p, own, u.load(i)));
+        back = pushed<coupled>(b_, coupled ? reversed(p) : p, P.load(i), back);
+      }
+      backs_.set(j, {reduce(back.x), reduce(back.y), reduce(back.z)});
+    }
   }
 
   std::size_t size_ = 0, stride_ = 0, groups_ = 0;
@@ -263,7 +253,7 @@ class PointSystem {
   AlignedList<float> area_, per_width_, group_weight_;
   VectorList m_, x_at_, x_, n_;   // directions of pressing, the points, their feet, normals
   VectorList group_x_, group_n_;  // sums over a group by depth and area; x: the mean
-  AlignedList<float> matrix_;     // pairs i > j by column, in the order in which it is made and read
+  AlignedList<float> matrix_;     // without friction: pairs i > j by column
   AlignedList<float> back_;       // of displace(), without friction and with it
   VectorList backs_;
 };

@@ -5,6 +5,7 @@
 /// beneath them, a small matrix, and back. Per tick.
 
 #include <palpate/core/fixed_vector.hpp>
+#include <palpate/resolved/detail/load_prisms.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/response/response_field.hpp>
 #include <palpate/response/tick/solved_nodes.hpp>
@@ -25,7 +26,8 @@ class RegularPart {
 
   template <class Body>
   RegularPart(const Body& body, std::size_t capacity)
-      : slot_of_(body.field().load_mesh().nodes().size(), none),
+      : prisms_(body.field().load_mesh()),
+        slot_of_(body.field().load_mesh().nodes().size(), none),
         node_(max_nodes, 0),
         tick_of_(max_nodes, 0),
         index_(max_nodes, 0),
@@ -46,13 +48,31 @@ class RegularPart {
     beside_.clear();
   }
   static constexpr std::uint32_t anywhere = ~0u;
-  /// The next point, at x in object coordinates. `triangle` of the load mesh: where it was, or anywhere; then
-  /// where it is.
-  template <class Body>
-  void add(const Body& body, const Vec3<double>& x, std::uint32_t& triangle) noexcept {
-    place(body.field(), x, triangle, weights_[size_++], true);
+  /// Points at feet, relative to `origin`. `triangle(i)` of the load mesh: where point i was, or anywhere;
+  /// then where it is.
+  template <class Body, class Triangle>
+  void place_points(const Body& body, const Vec3<double>& origin, const VectorList& feet, std::size_t n,
+                    const Triangle& triangle) noexcept {
+    constexpr std::size_t many = LoadPrisms::V::size();
+    const SimdVec3<LoadPrisms::V> shift = each((origin - prisms_.centre()).cast<float>());
+    for (size_ = 0; size_ < n;) {
+      const std::size_t first = size_, count = (std::min)(many, n - first);
+      std::array<std::uint32_t, many> beneath{};
+      for (std::size_t k = 0; k < count; ++k)
+        if (triangle(first + k) != anywhere) beneath[k] = triangle(first + k);
+      const LoadPrisms::Places at = prisms_.locate(shift + feet.load(first), beneath);
+      for (std::size_t k = 0; k < count; ++k, ++size_) {
+        std::uint32_t& t = triangle(size_);
+        if (t != anywhere && at.found[k] > 0) {
+          const float rest = (std::max)(1 - at.q[k] - at.r[k], 0.f);
+          put(body.field(), t, {rest, at.q[k], at.r[k]}, share_at(at.far2[k]), weights_[size_], true);
+        } else {
+          place(body.field(), origin + feet[size_].template cast<double>(), t, weights_[size_], true);
+        }
+      }
+    }
   }
-  /// A load P of another tool, likewise.
+  /// A load P of another tool, at x in object coordinates; `triangle` likewise.
   template <class Body>
   void add_beside(const Body& body, const Vec3<double>& x, std::uint32_t& triangle,
                   const Vec3<float>& P) noexcept {
@@ -93,20 +113,12 @@ class RegularPart {
     gather([&](std::size_t i) { return P[i]; });
     for (std::size_t i = 0; i < size_; ++i) u.set(i, u[i] + of(i));
   }
-  /// The nodes' displacements by load(i) at the points.
-  template <class Load>
-  void gather(const Load& load) noexcept {
-    float* const f = load_.data();
-    for (std::size_t i = 0; i < stride_; i += Group::size()) store(f + i, Group{});
-    for (std::size_t i = 0; i < size_; ++i) {
-      const Vec3<float> P = load(i);
-      const Four P4(P.x(), P.y(), P.z(), 0.f);
-      for (const Weight& w : weights_[i]) store(f + 4 * w.node, Four(f + 4 * w.node) + Four(w.value) * P4);
-    }
-    multiply(u_);
+  /// w at the points by loads P, and what normal_at() gives.
+  void respond(const VectorList& P) noexcept {
+    gather([&](std::size_t i) { return P[i]; });
+    for (std::size_t i = 0; i < size_; ++i) w_.set(i, of(i));
   }
-  /// w at point i, of what was gathered last.
-  [[nodiscard]] Vec3<float> of(std::size_t i) const noexcept { return at(weights_[i], u_); }
+  [[nodiscard]] const VectorList& response() const noexcept { return w_; }  ///< of the last respond()
   /// The nodes' displacements by what other tools push with.
   void gather_beside() noexcept {
     for (std::size_t i = 0; i < stride_; i += Group::size()) store(&load_[i], Group{});
@@ -115,32 +127,46 @@ class RegularPart {
   }
   /// w at point i of that.
   [[nodiscard]] Vec3<float> beside(std::size_t i) const noexcept { return at(weights_[i], u_beside_); }
-  /// Gradient along the surface of n.w, n the surface's own normal, w of what was gathered last and
-  /// `beside(i)`, what others' loads do: by regression over the pressures q. One gradient for all is
-  /// continuous in the pose; the load mesh's own jumps from triangle to triangle.
-  template <class Beside>
-  [[nodiscard]] Vec3<float> slope(const PointSystem& system, const float* q, const Beside& beside) noexcept {
-    Vec3<float> mean_x = Vec3<float>::Zero(), m = Vec3<float>::Zero();
-    float sum = 0, mean_w = 0;
-    for (std::size_t i = 0; i < size_; ++i) {
-      w_[i] = system.normal(i).dot(of(i) + beside(i));
-      sum += q[i], mean_w += q[i] * w_[i];
-      mean_x += q[i] * system.foot(i), m += q[i] * system.direction(i);
+  /// Gradient along the surface of n.w, n the surface's own normal, w of response() and of what others' loads
+  /// do (`given`): by regression over the pressures q. One gradient for all is continuous in the pose; the
+  /// load mesh's own jumps from triangle to triangle.
+  template <class Given>
+  [[nodiscard]] Vec3<float> slope(const PointSystem& system, const float* q,
+                                  const Given& given) const noexcept {
+    using V = VectorList::V;
+    const auto sum_of = [](const SimdVec3<V>& v) noexcept {
+      return Vec3<float>(reduce(v.x), reduce(v.y), reduce(v.z));
+    };
+    const auto w_at = [&](std::size_t i) PALPATE_INLINE_LAMBDA {
+      return dot(system.normals().load(i), w_.load(i) + given.load(i));
+    };
+    V loads{}, ws{}, areas{};
+    SimdVec3<V> xs{}, ms{};
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+      const V qi(q + i);
+      loads += qi, ws += qi * w_at(i), areas += qi * V(system.areas() + i);
+      xs += qi * system.feet().load(i), ms += qi * system.directions().load(i);
     }
-    if (!(sum > 0)) return Vec3<float>::Zero();
-    mean_x /= sum, mean_w /= sum, m.normalize();
-    Mat3<float> spread = Mat3<float>::Zero();
-    Vec3<float> with_w = Vec3<float>::Zero();
-    for (std::size_t i = 0; i < size_; ++i) {
-      const Vec3<float> x = tangential<float>(system.foot(i) - mean_x, m);
-      spread +=
-          q[i] / sum * (x * x.transpose() + (system.area(i) / 12) * Mat3<float>::Identity());  // a cell's own
-      with_w += q[i] / sum * (w_[i] - mean_w) * x;
+    const float load = reduce(loads);
+    if (!(load > 0)) return Vec3<float>::Zero();
+    const SimdVec3<V> mean_x = each(Vec3<float>(sum_of(xs) / load)),
+                      m = each(Vec3<float>(sum_of(ms).normalized()));
+    const V mean_w(reduce(ws) / load);
+    SimdVec3<V> squares{}, products{}, with_w{};
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+      const SimdVec3<V> x = across(m, system.feet().load(i) - mean_x), qx = V(q + i) * x;
+      squares += SimdVec3<V>{qx.x * x.x, qx.y * x.y, qx.z * x.z};
+      products += SimdVec3<V>{qx.y * x.z, qx.z * x.x, qx.x * x.y};
+      with_w += (w_at(i) - mean_w) * qx;
     }
-    const float size = spread.trace();  // powers of small numbers would be 0
-    return (spread / size).inverse() * (with_w / size);
+    const Vec3<float> xx = sum_of(squares) / load, xy = sum_of(products) / load;
+    Mat3<float> spread;
+    spread << xx.x(), xy.z(), xy.y(), xy.z(), xx.y(), xy.x(), xy.y(), xy.x(), xx.z();
+    spread += reduce(areas) / (12 * load) * Mat3<float>::Identity();  // a cell's own
+    const float size = spread.trace();                                // powers of small numbers would be 0
+    return (spread / size).inverse() * (sum_of(with_w) / (load * size));
   }
-  /// w along m at a further point, of what was gathered last, with others' loads if there are any.
+  /// w along m at a further point, by the loads of respond(), with others' loads if there are any.
   template <class Body>
   [[nodiscard]] float normal_at(const Body& body, const Vec3<double>& x, std::uint32_t& triangle,
                                 const Vec3<float>& m) noexcept {
@@ -158,24 +184,28 @@ class RegularPart {
     std::uint16_t node;  // among those in use
     float value;
   };
-  using Weights = FixedVector<Weight, place_nodes>;
+  using Weights = FixedVector<Weight, LoadMesh::most_beneath>;
 
   [[nodiscard]] Mat3<float>& kept(std::size_t k, std::size_t l) noexcept { return kept_[k * max_nodes + l]; }
 
   // Weights at the solved nodes around x. Nodes that are not in use come in if `take_in`.
   void place(const ResponseField& field, const Vec3<double>& x, std::uint32_t& triangle, Weights& weights,
              bool take_in) noexcept {
-    weights.clear();
     const LoadMesh& mesh = field.load_mesh();
     const LoadPosition position = triangle == anywhere ? mesh.locate(x) : mesh.locate(x, triangle);
     triangle = position.triangle;
-    FixedVector<NodeWeight, place_nodes, Spare::undefined> nodes;
-    add_position(mesh, position, nodes);
     const double share = regular_share(position, mean_of(&LoadNode::size, field, position));
-    for (const NodeWeight& n : nodes) {
-      if (!(n.weight > 0)) continue;
-      const std::uint16_t index = take_in ? use(field, n.node) : in_use(n.node);
-      if (index != none) weights.push_back({index, static_cast<float>(n.weight * share)});
+    put(field, triangle, position.weight.cast<float>(), static_cast<float>(share), weights, take_in);
+  }
+  // Weights of the solved nodes beneath a triangle, of its corners' weights.
+  void put(const ResponseField& field, std::uint32_t triangle, const Vec3<float>& corners, float share,
+           Weights& weights, bool take_in) noexcept {
+    weights.clear();
+    for (const LoadMesh::Beneath& b : field.load_mesh().beneath(triangle)) {
+      const float weight = b.part.dot(corners);
+      if (!(weight > 0)) continue;
+      const std::uint16_t index = take_in ? use(field, b.node) : in_use(b.node);
+      if (index != none) weights.push_back({index, weight * share});
     }
   }
   // The node's index among those in use, or none.
@@ -222,6 +252,20 @@ class RegularPart {
     }
   }
 
+  // The nodes' displacements by load(i) at the points.
+  template <class Load>
+  void gather(const Load& load) noexcept {
+    float* const f = load_.data();
+    for (std::size_t i = 0; i < stride_; i += Group::size()) store(f + i, Group{});
+    for (std::size_t i = 0; i < size_; ++i) {
+      const Vec3<float> P = load(i);
+      const Four P4(P.x(), P.y(), P.z(), 0.f);
+      for (const Weight& w : weights_[i]) store(f + 4 * w.node, Four(f + 4 * w.node) + Four(w.value) * P4);
+    }
+    multiply(u_);
+  }
+  // w at point i, of what was gathered last.
+  [[nodiscard]] Vec3<float> of(std::size_t i) const noexcept { return at(weights_[i], u_); }
   // u = w load_ at the nodes.
   void multiply(AlignedList<float>& u) noexcept {
     const float* const f = load_.data();
@@ -240,13 +284,14 @@ class RegularPart {
     return {sum[0], sum[1], sum[2]};
   }
 
+  LoadPrisms prisms_;
   std::vector<std::uint16_t> slot_of_;  // of a load mesh's node, or none
   std::vector<std::uint32_t> node_;     // of a slot
   std::vector<std::uint32_t> tick_of_;  // when a slot was in use last; 0: never
   std::vector<std::uint16_t> index_;    // of a slot, among those in use
   std::vector<Mat3<float>> kept_;       // between slots
   std::vector<Weights> weights_;        // of the points
-  std::vector<float> w_;                // of slope()
+  VectorList w_;                        // at the points, of respond()
   FixedVector<std::uint16_t, max_nodes> used_, was_used_;
   AlignedList<float> load_, u_, u_beside_;  // of the nodes in use, four numbers each
   FixedVector<Four, max_nodes> beside_;     // loads of other tools, likewise

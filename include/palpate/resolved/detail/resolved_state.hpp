@@ -22,6 +22,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -48,8 +49,10 @@ class ResolvedState {
         carried_(capacity),
         strain_(body.nu()) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
+    last_.resize(padded);
     pressure_.resize(padded);
-    if constexpr (has_friction) friction_.resize(padded);
+    result_.resize(padded);
+    for (auto* list : {&outward_, &felt_, &anchor_}) list->resize(padded);
   }
 
   void reset() noexcept {
@@ -99,10 +102,11 @@ class ResolvedState {
   /// Where friction has carried the surface.
   [[nodiscard]] const auto& carried() const noexcept { return carried_; }
   /// Tool point i, over x in object coordinates (carried().before()), is `depth` in the body, whose inward
-  /// normal is m. False where there is no place left.
-  bool touch(std::uint32_t i, const Vec3<S>& x, S depth, const Vec3<S>& m) noexcept {
+  /// normal is m; the tool's outward one. False where there is no place left.
+  bool touch(std::uint32_t i, const Vec3<S>& x, S depth, const Vec3<S>& m, const Vec3<S>& outward) noexcept {
     if (touching_.full()) return false;
-    touching_.push_back({i, x, m.template cast<float>(), static_cast<float>(depth)});
+    touching_.push_back(
+        {i, x, m.template cast<float>(), outward.template cast<float>(), static_cast<float>(depth)});
     Point& p = points_[i];
     if (p.tick + 1 != tick_) p = {};
     p.tick = tick_;
@@ -134,14 +138,13 @@ class ResolvedState {
     }
     for (int round = 0;; ++round) {
       build(force, tool);
-      begin_loads(tool, round == 0 ? predicted() : 1.f);
+      begin_loads(round == 0 ? share_that_goes_on<has_friction>(size(), last_, system_.directions(),
+                                                                system_.depth.data(), beside_)
+                             : 1.f);
       solve_inside(force, friction, tolerance);
-      if constexpr (RegularPart::active) regular_.gather([this](std::size_t i) { return load(i); });
+      if constexpr (RegularPart::active) regular_.respond(result_.load);
       if constexpr (Strain::active)
-        strain_.measure(
-            system_, pressure_.q.data(),
-            [this](std::size_t i) -> Vec3<float> { return displacement(i) + given(i); },
-            [this](std::size_t i) -> Vec3<float> { return regular_.of(i) + given(i); });
+        strain_.measure(system_, pressure_.q.data(), pressure_.r.data(), regular_.response(), beside_);
       const bool again = Strain::active && first && round == 0;  // the strain was not known
       if (round == most_rounds || !take_in(force, tool, tolerance, again)) break;
     }
@@ -164,6 +167,7 @@ class ResolvedState {
   /// How often points may come in within a tick.
   static constexpr int most_rounds = 3;
 
+  using V = VectorList::V;
   using Point = PointMemory;
   using Touching = TouchingPoint<S>;
 
@@ -174,7 +178,7 @@ class ResolvedState {
   void forget() noexcept {
     slides_ = false;
     strength_ = {};
-    if constexpr (has_friction) friction_.step = 0, carried_.clear();
+    if constexpr (has_friction) result_.step = 0, carried_.clear();
     if constexpr (Strain::active) strain_.forget();
     if constexpr (Beside::active) beside_.set({});
   }
@@ -191,43 +195,43 @@ class ResolvedState {
       system_.add(relative(at.x), at.m, at.depth, static_cast<float>(tool.area(at.point)));
     }
     system_.build();
-    for (std::size_t i = 0; i < size(); ++i) system_.depth[i] *= strain_.factor();
+    for (std::size_t i = 0; i < size(); ++i) {
+      system_.depth[i] *= strain_.factor();
+      last_.set(i, point(i));
+      outward_.set(i, touching_[inside_[i]].outward);
+    }
+    for (std::size_t i = size(); i < system_.stride(); ++i) last_.set(i, {});
     if constexpr (RegularPart::active) {
       regular_.clear();
-      for (std::size_t i = 0; i < size(); ++i)
-        regular_.add(force.compliance(),
-                     (origin_ + system_.foot(i).template cast<S>()).template cast<double>(),
-                     point(i).triangle);
+      regular_.place_points(force.compliance(), origin_.template cast<double>(), system_.feet(), size(),
+                            [this](std::size_t i) -> std::uint32_t& { return point(i).triangle; });
     }
     if constexpr (Beside::active) beside_.place(force.compliance(), origin_, per_load_, regular_);
     if constexpr (RegularPart::active) regular_.build();
     if constexpr (Beside::active) beside_.move_points(system_, regular_);
   }
-  /// Displacement of point i by others' loads [m].
-  [[nodiscard]] Vec3<float> given(std::size_t i) const noexcept {
-    if constexpr (Beside::active)
-      return beside_.given(i);
-    else
-      return Vec3<float>::Zero();
-  }
-
   template <class Friction>
   void solve_inside(const Force& force, const Friction& friction, float tolerance) noexcept {
     const int iterations = force.params().iterations;
     Remainder left;
-    if constexpr (!has_friction) {
-      const auto apply = [this](const float* q, float* u) noexcept { displace(q, u); };
-      left = solve_pressures(size(), pressure_, system_.depth.data(), tolerance, iterations, apply);
-    } else {
+    if constexpr (!has_friction)
+      left = solve_pressures(size(), pressure_, system_.depth.data(), tolerance, iterations,
+                             [this](const float* q, float* u) noexcept { displace(q, u); });
+    else
       left = solve_loads(
-          size(), friction_, system_.directions(), system_.depth.data(), system_.tangential_share(),
+          size(), result_, system_.directions(), system_.depth.data(), system_.tangential_share(),
           system_.flexible_step(), tolerance, iterations,
           [this](const VectorList& P, VectorList& u) noexcept { displace(P, u); },
           [&](float q) noexcept { return coefficient(friction, q); });
-      for (std::size_t i = 0; i < size(); ++i) {
-        const Vec3<float> m = system_.direction(i);
-        pressure_.q[i] = (std::max)(m.dot(friction_.load[i]), 0.f);
-        pressure_.r[i] = m.dot(friction_.u[i]) - system_.depth[i];
+    for (std::size_t i = 0; i < system_.stride(); i += V::size()) {
+      const SimdVec3<V> m = system_.directions().load(i);
+      const V depth(&system_.depth[i]);
+      if constexpr (!has_friction) {
+        result_.load.store(i, V(&pressure_.q[i]) * m);
+        result_.u.store(i, (V(&pressure_.r[i]) + depth) * m);
+      } else {
+        (max)(dot(m, result_.load.load(i)), V(0.f)).copy_to(&pressure_.q[i]);
+        (dot(m, result_.u.load(i)) - depth).copy_to(&pressure_.r[i]);
       }
     }
     residual_.iterations += left.iterations;
@@ -237,34 +241,17 @@ class ResolvedState {
     system_.displace(loads, u);
     if constexpr (RegularPart::active) regular_.add(system_, loads, u);
   }
-  [[nodiscard]] float predicted() noexcept {
-    TickChange change;
-    for (std::size_t i = 0; i < size(); ++i) {
-      const Point& p = point(i);
-      if (!p.loaded) continue;
-      change.press(p, system_.direction(i), system_.depth[i]);
-      if constexpr (has_friction) change.hold(p, system_.direction(i), p.anchor - given(i));
-    }
-    return change.share();
-  }
-  [[nodiscard]] Vec3<float> outward(const ToolPoints<S>& tool, std::size_t i) const noexcept {
-    return (pose_.rotation * tool.vector_areas()[touching_[inside_[i]].point]).template cast<float>();
-  }
-  void begin_loads(const ToolPoints<S>& tool, float share) noexcept {
-    for (std::size_t i = 0; i < size(); ++i) {
-      const Point& p = point(i);
-      const Vec3<float> P = p.load + share * p.load_step, m = system_.direction(i);
-      pressure_.q[i] = (std::max)(m.dot(P), 0.f);
-      if constexpr (has_friction) {
-        friction_.load.set(i, P);
-        friction_.held[i] = p.loaded ? 1.f : 0.f;
-        friction_.anchor.set(i, p.anchor - given(i));
-        friction_.slant[i] = tool.vector_areas().empty() ? 1.f : slant(outward(tool, i), m);
+  void begin_loads(float share) noexcept {
+    for (std::size_t i = 0; i < system_.stride(); i += V::size()) {
+      const SimdVec3<V> P = last_.load.load(i) + V(share) * last_.load_step.load(i);
+      if constexpr (!has_friction) {
+        (max)(dot(system_.directions().load(i), P), V(0.f)).copy_to(&pressure_.q[i]);
+      } else {
+        result_.load.store(i, P);
+        result_.anchor.store(i, last_.anchor.load(i) - beside_.load(i));
+        V(&last_.loaded[i]).copy_to(&result_.held[i]);
+        slant(outward_.load(i), system_.directions().load(i)).copy_to(&result_.slant[i]);
       }
-    }
-    for (std::size_t i = size(); i < system_.stride(); ++i) {
-      pressure_.q[i] = 0;
-      if constexpr (has_friction) friction_.load.set(i, Vec3<float>::Zero()), friction_.held[i] = 0;
     }
   }
 
@@ -300,7 +287,7 @@ class ResolvedState {
     }
     if (!more) return false;
     for (std::size_t i = 0; i < n; ++i)
-      point(i).load_step = load(i) - point(i).load;  // the next round's begin
+      point(i).load_step = result_.load[i] - point(i).load;  // the next round's begin
     std::sort(inside_.begin(), inside_.end());
     return true;
   }
@@ -318,57 +305,62 @@ class ResolvedState {
     const S normal = static_cast<S>(q) * per_load_;
     return normal > S(0) ? strength_.coefficient(friction, normal) : 0.f;
   }
-  [[nodiscard]] Vec3<float> load(std::size_t i) const noexcept {
-    if constexpr (has_friction)
-      return friction_.load[i];
-    else
-      return pressure_.q[i] * system_.direction(i);
-  }
-  [[nodiscard]] Vec3<float> displacement(std::size_t i) const noexcept {
-    if constexpr (has_friction)
-      return friction_.u[i];
-    else
-      return (pressure_.r[i] + system_.depth[i]) * system_.direction(i);
+  // What points feel, where they hold the surface and whether they stick: felt_, anchor_, last_.sticks.
+  // Returns the sums of normal loads, and of those that stick.
+  std::pair<float, float> react() noexcept {
+    SimdVec3<V> slope{};
+    if constexpr (RegularPart::active) slope = each(regular_.slope(system_, pressure_.q.data(), beside_));
+    const V zero(0.f), one(1.f), tiny((std::numeric_limits<float>::min)());
+    V total{}, sticking{};
+    for (std::size_t i = 0; i < system_.stride(); i += V::size()) {
+      const SimdVec3<V> m = system_.directions().load(i), n = system_.normals().load(i),
+                        P = result_.load.load(i);
+      const V q(&pressure_.q[i]);
+      V slips = one;
+      if constexpr (has_friction) {
+        const SimdVec3<V> t = across(m, P), u = result_.u.load(i);
+        const V limit = V(result_.mu) * V(&result_.slant[i]) * q, limit2 = limit * limit, held2 = dot(t, t);
+        const auto sticks = held2 < V(slips_from) * limit2;
+        slips = select(sticks, held2 / (max)(limit2, tiny), one);
+        const auto holds = sticks && V(&result_.held[i]) > zero;
+        const SimdVec3<V> a = result_.anchor.load(i),
+                          kept{select(holds, a.x, u.x), select(holds, a.y, u.y), select(holds, a.z, u.z)};
+        anchor_.store(i, across(m, beside_.load(i) + kept));
+        select(sticks, one, zero).copy_to(&last_.sticks[i]);
+        total += q, sticking += select(sticks, q, zero);
+      }
+      // The tool feels minus the gradient of the energy as far as the point slips: of the depth along the
+      // direction of pressing, and of the regular part. Where it sticks the body goes with it.
+      felt_.store(i, P + (slips * q) * (one / (max)(dot(n, m), tiny) * n - m - slope));
+    }
+    return {reduce(total), reduce(sticking)};
   }
 
   void finish(const ToolPoints<S>& tool) noexcept {
-    for (std::size_t i = 0; i < size(); ++i) point(i).go_on(load(i), displacement(i));
+    const auto [total, sticking] = react();
     if constexpr (has_friction) carried_.clear();
-    Vec3<float> slope = Vec3<float>::Zero();
-    if constexpr (RegularPart::active)
-      slope = regular_.slope(system_, pressure_.q.data(), [this](std::size_t i) { return given(i); });
-    float total = 0, sticking = 0;
     for (std::size_t i = 0; i < size(); ++i) {
       const Touching& at = touching_[inside_[i]];
       Point& p = point(i);
       const float q = pressure_.q[i];
+      p.go_on(result_.load[i], result_.u[i]);
       p.sunk = pressure_.r[i] + at.depth;
       p.loaded = q > 0;
       p.sticks = false;
       if (!p.loaded) continue;
-      float slips = 1;
-      const Vec3<float> m = system_.direction(i), n = system_.normal(i);
       if constexpr (has_friction) {
-        const float held2 = tangential<float>(p.load, m).squaredNorm(),
-                    mu = friction_.mu * friction_.slant[i], limit2 = mu * q * (mu * q);
-        p.sticks = held2 < slips_from * limit2;
-        if (p.sticks) slips = held2 / limit2, sticking += q;
-        p.anchor = tangential<float>(
-            given(i) + (p.sticks && friction_.held[i] > 0 ? friction_.anchor[i] : friction_.u[i]), m);
-        total += q;
+        p.sticks = last_.sticks[i] > 0;
+        p.anchor = anchor_[i];
         carried_.add(at.point / static_cast<std::uint32_t>(batch_size), at.x, q, p.anchor,
                      static_cast<float>(tool.area(at.point)));
       }
-      // The tool feels minus the gradient of the energy as far as the point slips: of the depth along the
-      // direction of pressing, and of the regular part. Where it sticks the body goes with it.
-      const Vec3<float> felt = p.load + slips * q * (n / n.dot(m) - m - slope);
       contacts_.push_back({at.point, p.sticks, pose_ * tool.point(at.point), -at.m.template cast<S>(),
-                           -per_load_ * felt.template cast<S>(),
+                           -per_load_ * felt_[i].template cast<S>(),
                            per_load_ * static_cast<S>(q) / tool.area(at.point), static_cast<S>(at.depth)});
     }
     if constexpr (has_friction) {
       carried_.build();
-      slides_ = strength_.remember(total, sticking, system_, pressure_, friction_);
+      slides_ = strength_.remember(total, sticking, system_, pressure_, result_);
     }
   }
 
@@ -377,9 +369,12 @@ class ResolvedState {
   BoundedList<std::uint32_t> inside_;  // of touching_, rising: those that are solved for
   BoundedList<PointContact<S>> contacts_;
   PointSystem system_;
+  MemoryLists last_;  // of those that are solved for
   Unloaded unloaded_;
   PressureLists pressure_;
-  PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<has_friction, FrictionLists, Absent<4>> friction_;
+  std::conditional_t<has_friction, FrictionLists, LoadLists> result_;
+  VectorList outward_;  // the tool's normals
+  VectorList felt_, anchor_;
   PALPATE_NO_UNIQUE_ADDRESS RegularPart regular_;
   PALPATE_NO_UNIQUE_ADDRESS Beside beside_;
   PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<has_friction, CarriedSurface<S>, StillSurface> carried_;

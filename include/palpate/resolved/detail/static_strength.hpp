@@ -17,6 +17,7 @@ namespace palpate::detail {
 /// than it rose, however large the drop, and does not fall in a tick.
 class StaticStrength {
  public:
+  using V = VectorList::V;
   /// mu for the normal force of the whole contact [N], > 0.
   template <class Friction, Real S>
   [[nodiscard]] float coefficient(const Friction& friction, S normal) noexcept {
@@ -32,13 +33,18 @@ class StaticStrength {
       left_ = (std::max)(left_, total > 0 ? sticking / total : 1.f);
       return false;
     }
-    Vec3<float> slip = Vec3<float>::Zero(), stretch = Vec3<float>::Zero();
-    for (std::size_t i = 0; i < system.size(); ++i) {
-      const Vec3<float> m = system.direction(i), u = tangential<float>(friction.u[i], m);
-      if (friction.held[i] > 0) slip += pressure.q[i] * (tangential<float>(friction.anchor[i], m) - u);
-      stretch += pressure.q[i] * u;
+    SimdVec3<V> slip{}, stretch{};
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+      const SimdVec3<V> m = system.directions().load(i);
+      const V q(&pressure.q[i]);
+      const SimdVec3<V> u = across(m, friction.u.load(i));
+      slip += (q * V(&friction.held[i])) * (across(m, friction.anchor.load(i)) - u);
+      stretch += q * u;
     }
-    const float spring = 2 * drop_ * stretch.norm(), whole = spring + slip.norm();
+    const auto length = [](const SimdVec3<V>& v) noexcept {
+      return Vec3<float>(reduce(v.x), reduce(v.y), reduce(v.z)).norm();
+    };
+    const float spring = 2 * drop_ * length(stretch), whole = spring + length(slip);
     if (whole > 0) left_ *= spring / whole;
     return true;
   }

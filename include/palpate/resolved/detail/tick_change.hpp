@@ -4,39 +4,45 @@
 /// @file How much of what the last tick changed goes on.
 
 #include <palpate/core/scalar.hpp>
-#include <palpate/core/vector.hpp>
+#include <palpate/core/simd_math.hpp>
 #include <palpate/resolved/detail/touching_point.hpp>
+#include <palpate/resolved/detail/vector_list.hpp>
+
+#include <cstddef>
+#include <limits>
 
 namespace palpate::detail {
 
 /// The share s by which loads and displacements go on, P + s dP and u + s du, so that the conditions of
-/// contact are met best: least squares over the points.
-class TickChange {
- public:
-  /// A loaded point that presses along m: by how much it is to be displaced along it [m].
-  void press(const PointMemory& p, const Vec3<float>& m, float depth) noexcept {
-    add(depth - m.dot(p.u), m.dot(p.u_step));
-  }
-  /// The same point where it has an anchor [m]: it sticks to it, or slips with t + s dt along a - u - s du.
-  void hold(const PointMemory& p, const Vec3<float>& m, const Vec3<float>& anchor) noexcept {
-    const Vec3<float> off = tangential<float>(anchor - p.u, m), du = tangential<float>(p.u_step, m);
-    if (p.sticks) {
-      meets_ += du.dot(off), size2_ += du.squaredNorm();
-      return;
+/// contact are met best: least squares over the loaded points. Each, pressing along m, is to be displaced by
+/// `depth` along it; where it has an anchor a, it sticks to it, or slips with t + s dt along a - u - s du.
+/// `given`: displacements by others' loads.
+template <bool has_friction, class Given>
+[[nodiscard]] float share_that_goes_on(std::size_t n, const MemoryLists& last, const VectorList& m,
+                                       const float* depth, const Given& given) noexcept {
+  using V = VectorList::V;
+  constexpr float most = 3;  // a tick may change this many times what the last one did, or undo it
+  const V zero(0.f), tiny((std::numeric_limits<float>::min)());
+  V meets = zero, size2 = zero;
+  for (std::size_t i = 0; i < n; i += V::size()) {
+    const SimdVec3<V> mi = m.load(i), u = last.u.load(i), du = last.u_step.load(i);
+    const V loaded(&last.loaded[i]), goes = dot(mi, du);
+    V meeting = (V(depth + i) - dot(mi, u)) * goes, going2 = goes * goes;
+    if constexpr (has_friction) {
+      const SimdVec3<V> off = across(mi, last.anchor.load(i) - given.load(i) - u), step = across(mi, du),
+                        t = across(mi, last.load.load(i)), dt = across(mi, last.load_step.load(i));
+      const V t2 = dot(t, t), per_t = select(t2 > zero, inverse_sqrt((max)(t2, tiny)), zero),
+              lacks = per_t * dot(mi, cross(t, off)),
+              turns = per_t * dot(mi, cross(t, step) - cross(dt, off));
+      const auto sticks = V(&last.sticks[i]) > zero;
+      meeting += select(sticks, dot(step, off), lacks * turns);
+      going2 += select(sticks, dot(step, step), turns * turns);
     }
-    const Vec3<float> t = tangential<float>(p.load, m), dt = tangential<float>(p.load_step, m);
-    const float size = t.norm();
-    if (size > 0) add(m.dot(t.cross(off)) / size, m.dot(t.cross(du) - dt.cross(off)) / size);
+    meets += loaded * meeting;
+    size2 += loaded * going2;
   }
-  [[nodiscard]] float share() const noexcept {
-    return size2_ > 0 ? clamp(meets_ / size2_, -most, most) : 0.f;
-  }
-
- private:
-  /// A tick may change this many times what the last one did, or undo it.
-  static constexpr float most = 3;
-  void add(float lacks, float goes) noexcept { meets_ += lacks * goes, size2_ += goes * goes; }
-  float meets_ = 0, size2_ = 0;
-};
+  const float whole = reduce(size2);
+  return whole > 0 ? clamp(reduce(meets) / whole, -most, most) : 0.f;
+}
 
 }  // namespace palpate::detail

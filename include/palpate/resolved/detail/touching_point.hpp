@@ -3,8 +3,11 @@
 
 /// @file What a tick knows of the tool's points.
 
+#include <palpate/core/aligned_list.hpp>
 #include <palpate/core/vector.hpp>
+#include <palpate/resolved/detail/vector_list.hpp>
 
+#include <cstddef>
 #include <cstdint>
 
 namespace palpate::detail {
@@ -29,12 +32,31 @@ struct PointMemory {
   }
 };
 
+/// The same of the points that a tick solves for, for registers.
+struct MemoryLists {
+  VectorList load, u, load_step, u_step, anchor;
+  AlignedList<float> loaded, sticks;  ///< 1, or 0
+
+  void resize(std::size_t size) {
+    for (auto* list : {&load, &u, &load_step, &u_step, &anchor}) list->resize(size);
+    for (auto* list : {&loaded, &sticks}) list->resize(size);
+  }
+  void set(std::size_t i, const PointMemory& p) noexcept {
+    load.set(i, p.load), u.set(i, p.u);
+    load_step.set(i, p.load_step), u_step.set(i, p.u_step);
+    anchor.set(i, p.anchor);
+    loaded[i] = p.loaded ? 1.f : 0.f;
+    sticks[i] = p.sticks ? 1.f : 0.f;
+  }
+};
+
 /// A point that is beneath the surface in this tick.
 template <Real S>
 struct TouchingPoint {
   std::uint32_t point;  ///< of the tool
   Vec3<S> x;            ///< where friction has not carried the surface, object coordinates [m]
   Vec3<float> m;        ///< the surface's inward normal
+  Vec3<float> outward;  ///< the tool's normal; m where it is not known
   float depth;          ///< along it [m]
 };
 

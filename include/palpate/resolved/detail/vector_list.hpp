@@ -43,6 +43,12 @@ class VectorList {
   AlignedList<float> entries_;
 };
 
+/// v without its part along m, |m| = 1.
+template <SimdOrReal W>
+[[nodiscard]] PALPATE_INLINE SimdVec3<W> across(const SimdVec3<W>& m, const SimdVec3<W>& v) noexcept {
+  return v - dot(m, v) * m;
+}
+
 /// The same vector in every lane.
 template <SimdOrReal W = VectorList::V>
 [[nodiscard]] PALPATE_INLINE SimdVec3<W> each(const Vec3<float>& v) noexcept {

@@ -7,6 +7,8 @@
 #include <palpate/response/setup/mesh_edges.hpp>
 #include <palpate/response/tick/load_mesh.hpp>
 
+#include <algorithm>
+
 namespace palpate {
 
 PALPATE_COMPILED_INLINE void LoadMesh::index() {
@@ -15,6 +17,7 @@ PALPATE_COMPILED_INLINE void LoadMesh::index() {
   for (const auto& n : nodes_) mesh.vertices.push_back(n.source);
   bvh_.emplace(mesh);
   find_neighbours();
+  find_beneath();
   Vec3<double> high = low_ = mesh.vertices[0];
   for (const auto& v : mesh.vertices) {
     low_ = low_.cwiseMin(v);
@@ -54,6 +57,26 @@ PALPATE_COMPILED_INLINE void LoadMesh::find_neighbours() {
     if (l.key != r.key) continue;
     across_[l.triangle][l.corner] = r.triangle;
     across_[r.triangle][r.corner] = l.triangle;
+  }
+}
+
+PALPATE_COMPILED_INLINE void LoadMesh::find_beneath() {
+  beneath_begin_ = {0};
+  for (const auto& triangle : triangles_) {
+    const auto first = static_cast<std::ptrdiff_t>(beneath_.size());
+    const auto add = [&](std::uint32_t node, std::size_t corner, float part) {
+      auto at = std::find_if(beneath_.begin() + first, beneath_.end(),
+                             [node](const Beneath& b) { return b.node == node; });
+      if (at == beneath_.end()) at = beneath_.insert(at, {node, Vec3<float>::Zero()});
+      at->part[Eigen::Index(corner)] += part;
+    };
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (triangle[c] < solved_)
+        add(triangle[c], c, 1);
+      else
+        for (const Share& s : shares(triangle[c])) add(s.node, c, s.weight);
+    }
+    beneath_begin_.push_back(static_cast<std::uint32_t>(beneath_.size()));
   }
 }
 

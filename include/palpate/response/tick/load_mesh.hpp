@@ -54,6 +54,12 @@ class LoadMesh {
     float weight;
   };
   static constexpr std::size_t most_parts = 3;
+  /// A solved node beneath a triangle, and its parts of the loads at the triangle's corners.
+  struct Beneath {
+    std::uint32_t node;
+    Vec3<float> part;
+  };
+  static constexpr std::size_t most_beneath = 3 * most_parts;
 
   LoadMesh() = default;
 
@@ -73,6 +79,10 @@ class LoadMesh {
   [[nodiscard]] std::span<const Share> shares(std::size_t k) const noexcept {
     const std::uint32_t first = share_begin_[k - solved_];
     return {shares_.data() + first, share_begin_[k - solved_ + 1] - first};
+  }
+  [[nodiscard]] std::span<const Beneath> beneath(std::uint32_t triangle) const noexcept {
+    const std::uint32_t first = beneath_begin_[triangle];
+    return {beneath_.data() + first, beneath_begin_[triangle + 1] - first};
   }
   /// By node that is not solved, the first of its shares, and one more; the shares.
   [[nodiscard]] const std::vector<std::uint32_t>& share_begin() const noexcept { return share_begin_; }
@@ -157,6 +167,7 @@ class LoadMesh {
   // Everything that follows from nodes and triangles.
   void index();
   void find_neighbours();
+  void find_beneath();
   [[nodiscard]] std::size_t cell(const Vec3<double>& x) const noexcept {
     std::size_t at = 0;
     for (int axis = 0; axis < 3; ++axis) {
@@ -173,6 +184,8 @@ class LoadMesh {
   std::vector<Share> shares_;
   std::optional<TriangleBvh<double>> bvh_;
   std::vector<std::array<std::uint32_t, 3>> across_;
+  std::vector<std::uint32_t> beneath_begin_;  // by triangle, and one more
+  std::vector<Beneath> beneath_;
   std::vector<std::uint32_t> start_;  // per cell, a triangle near it
   Vec3<double> low_ = Vec3<double>::Zero(), per_size_ = Vec3<double>::Ones();
 };

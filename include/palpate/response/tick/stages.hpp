@@ -58,7 +58,7 @@ struct Indenter {
 struct PlacedContact {
   Indenter tool;
   LoadPosition position;
-  FixedVector<NodeWeight, place_nodes, Spare::undefined> nodes;
+  FixedVector<NodeWeight, LoadMesh::most_beneath, Spare::undefined> nodes;
   double regular = 1;        ///< share of w that counts: 1 on the surface, 0 far from it
   double carried = 1;        ///< part of the force that does not fall on the fixed region
   PatchTable::Level level;   ///< of the radius

@@ -40,18 +40,20 @@ class ResolvedCollector {
         Vec3<S> m(-in.gradient_x[k], -in.gradient_y[k], -in.gradient_z[k]);
         const S length = m.norm();
         if (!(length > S(0))) continue;
+        m /= length;
         // What faces away from the body cannot press on it; a wall fades out over some ten degrees, and
         // is out before it is upright: rounding would bring it in and out.
         S depth = in.depth[k];
+        Vec3<S> out = m;
         if (!outward.empty()) {
-          const Vec3<S>& out = outward[begin + k];
-          const S size = length * out.norm(), facing = (X.rotation * out).dot(m) - S(1e-4L) * size,
-                  whole = S(0.2L) * size;
+          out = X.rotation * outward[begin + k];
+          out /= out.norm();
+          const S facing = out.dot(m) - S(1e-4L), whole = S(0.2L);
           if (!(facing > S(0))) continue;
           if (facing < whole) depth *= facing / whole;
         }
         deepest = (std::max)(deepest, in.depth[k]);
-        if (!state.touch(begin + k, Vec3<S>(x.x[k], x.y[k], x.z[k]), depth, m / length))
+        if (!state.touch(begin + k, Vec3<S>(x.x[k], x.y[k], x.z[k]), depth, m, out))
           result.status |= Status::point_overflow;
       }
     };
