@@ -24,6 +24,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <functional>
 #include <memory>
 #include <numbers>
@@ -44,7 +45,8 @@ constexpr int ticks = 160;
 class AnyBody {
  public:
   using Scalar = S;
-  template <ContactSurface B>
+  template <class B>
+    requires(!std::same_as<B, AnyBody> && ContactSurface<B>)  // or it would be asked to know of itself
   explicit AnyBody(B body) : body_(std::make_shared<const Of<B>>(std::move(body))) {}
 
   [[nodiscard]] SurfacePoint<S> closest(const V& x) const noexcept { return body_->closest(x); }
