@@ -132,7 +132,8 @@ class LoadField {
     used_.clear();
     const LoadMesh& mesh = field_->load_mesh();
     const double per_load = 1 / (4 * std::numbers::pi * field_->shear_modulus());
-    drawn_.near = {.activation = 0};
+    drawn_.near = {};
+    drawn_.near.activation = 0;
     if (loads.empty()) return;
     Vec3<double> low = loads[0].position.template cast<double>(), high = low;
     for (std::size_t i = 0; i < loads.size(); ++i) {
