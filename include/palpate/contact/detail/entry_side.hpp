@@ -13,11 +13,10 @@ namespace palpate::detail {
 /// What a region remembers of the side on which it came in.
 ///
 /// Past the middle of a thin part the closest face is the far one, and the exit of every point turns round at
-/// once. It is seen at the deepest point: its exit turns by more than 135 degrees while it moves along it by
-/// less than it is deep before and after together; across it may move, for points of a blunt tool are equally
-/// deep to rounding. Neither happens round an edge of more than 45 degrees at any depth, nor where a tool
-/// grips a part from both sides (its jaws are further apart than they are deep, until the part is half as
-/// thick). Then `Status::beyond_reach` is reported, and
+/// once. It is seen at the deepest point: its exit turns by more than 135 degrees while it moves less than it
+/// is deep before and after together. Neither happens round an edge of more than 45 degrees at any depth, nor
+/// where a tool grips a part from both sides (its jaws are further apart than they are deep, until the part
+/// is half as thick). Then `Status::beyond_reach` is reported, and
 ///
 /// - as long as the force does not drop by half in a tick nor turn round, nothing else happens: a mallet
 ///   whose corner is through is carried by the rest of its face;
@@ -51,7 +50,7 @@ class EntrySide {
       return fade(X, sum);
     const S along = exit_.dot(sum.exit);
     if (depth_ > S(0) && (along < S(0) || seen_)) [[unlikely]] {
-      if (turned(along, exit_, sum.exit) && is_opposite(sum.position, sum.deepest))
+      if (turned(along, exit_, sum.exit) && (sum.position - position_).norm() < depth_ + sum.deepest)
         past_middle_ = seen_ = true;
       else if (along >= S(0))
         past_middle_ = false;  // it came back
@@ -78,12 +77,6 @@ class EntrySide {
   /// By more than 135 degrees, whose cosine is - sqrt(1/2); `product`: the dot product of the two.
   [[nodiscard]] static bool turned(S product, const Vec3<S>& from, const Vec3<S>& to) noexcept {
     return product < S(0) && product * product > S(0.5) * from.squaredNorm() * to.squaredNorm();
-  }
-
-  /// Whether the deepest point has moved along its exit by less than both depths together.
-  [[nodiscard]] bool is_opposite(const Vec3<S>& position, S depth) const noexcept {
-    const S through = exit_.dot(position - position_), both = depth_ + depth;
-    return through * through < both * both * exit_.squaredNorm();
   }
 
   template <class Sum>
