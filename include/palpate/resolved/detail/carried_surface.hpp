@@ -89,7 +89,7 @@ class CarriedSurface {
       const V far = one + dot(r, r) * per_area, phi = one / (far * far);
       sum += phi * a_.load(g), near += phi * V(&weight_[g]);
     }
-    return Vec3<float>(reduce(sum.x), reduce(sum.y), reduce(sum.z)) / (std::max)(reduce(near), 0.1f * total_);
+    return sum_of(sum) / (std::max)(reduce(near), 0.1f * total_);
   }
 
   VectorList x_, a_;           // of groups: mean place, sum of q a

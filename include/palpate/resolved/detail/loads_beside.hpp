@@ -93,7 +93,7 @@ class LoadsBeside {
     for (std::size_t i = 0; i < size_; i += V::size())
       sum = pushed(b_, point_pair(each<V>(x) - x_.load(i), each<V>(m), m_.load(i), V(&area_[i])), P_.load(i),
                    sum);
-    return {reduce(sum.x), reduce(sum.y), reduce(sum.z)};
+    return sum_of(sum);
   }
 
  private:

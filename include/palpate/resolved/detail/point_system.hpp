@@ -240,7 +240,7 @@ class PointSystem {
         u.store(i, pushed<coupled>(b_, p, own, u.load(i)));
         back = pushed<coupled>(b_, coupled ? reversed(p) : p, P.load(i), back);
       }
-      backs_.set(j, {reduce(back.x), reduce(back.y), reduce(back.z)});
+      backs_.set(j, sum_of(back));
     }
   }
 

@@ -134,9 +134,6 @@ class RegularPart {
   [[nodiscard]] Vec3<float> slope(const PointSystem& system, const float* q,
                                   const Given& given) const noexcept {
     using V = VectorList::V;
-    const auto sum_of = [](const SimdVec3<V>& v) noexcept {
-      return Vec3<float>(reduce(v.x), reduce(v.y), reduce(v.z));
-    };
     const auto w_at = [&](std::size_t i) PALPATE_INLINE_LAMBDA {
       return dot(system.normals().load(i), w_.load(i) + given.load(i));
     };

@@ -41,10 +41,7 @@ class StaticStrength {
       slip += (q * V(&friction.held[i])) * (across(m, friction.anchor.load(i)) - u);
       stretch += q * u;
     }
-    const auto length = [](const SimdVec3<V>& v) noexcept {
-      return Vec3<float>(reduce(v.x), reduce(v.y), reduce(v.z)).norm();
-    };
-    const float spring = 2 * drop_ * length(stretch), whole = spring + length(slip);
+    const float spring = 2 * drop_ * sum_of(stretch).norm(), whole = spring + sum_of(slip).norm();
     if (whole > 0) left_ *= spring / whole;
     return true;
   }

@@ -43,6 +43,12 @@ class VectorList {
   AlignedList<float> entries_;
 };
 
+/// The sum of all vectors.
+template <SimdOrReal W>
+[[nodiscard]] PALPATE_INLINE Vec3<float> sum_of(const SimdVec3<W>& v) noexcept {
+  return {reduce(v.x), reduce(v.y), reduce(v.z)};
+}
+
 /// v without its part along m, |m| = 1.
 template <SimdOrReal W>
 [[nodiscard]] PALPATE_INLINE SimdVec3<W> across(const SimdVec3<W>& m, const SimdVec3<W>& v) noexcept {
