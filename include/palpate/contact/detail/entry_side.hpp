@@ -13,10 +13,12 @@ namespace palpate::detail {
 /// What a region remembers of the side on which it came in.
 ///
 /// Past the middle of a thin part the closest face is the far one, and the exit of every point turns round at
-/// once. It is seen at the deepest point: its exit turns by more than 135 degrees while it moves less than it
-/// is deep before and after together. Neither happens round an edge of more than 45 degrees at any depth, nor
+/// once. It is seen at the deepest point: its exit turns by more than 135 degrees while it moves along it by
+/// less than it is deep before and after together, and so does the tool. Across, the deepest point may move
+/// as far as it likes: those of a blunt tool are equally deep to rounding, and the one past the middle first
+/// is the last to be the deepest. None of it happens round an edge of more than 45 degrees at any depth, nor
 /// where a tool grips a part from both sides (its jaws are further apart than they are deep, until the part
-/// is half as thick). Then `Status::beyond_reach` is reported, and
+/// is half as thick), nor where a tool is put elsewhere. Then `Status::beyond_reach` is reported, and
 ///
 /// - as long as the force does not drop by half in a tick nor turn round, nothing else happens: a mallet
 ///   whose corner is through is carried by the rest of its face;
@@ -50,7 +52,7 @@ class EntrySide {
       return fade(X, sum);
     const S along = exit_.dot(sum.exit);
     if (depth_ > S(0) && (along < S(0) || seen_)) [[unlikely]] {
-      if (turned(along, exit_, sum.exit) && (sum.position - position_).norm() < depth_ + sum.deepest)
+      if (turned(along, exit_, sum.exit) && is_opposite(X, sum.position, depth_ + sum.deepest))
         past_middle_ = seen_ = true;
       else if (along >= S(0))
         past_middle_ = false;  // it came back
@@ -66,6 +68,7 @@ class EntrySide {
     if (!past_middle_) {
       exit_ = sum.exit;
       position_ = sum.position;
+      point_ = X.to_tool(position_);
       depth_ = sum.deepest;
     }
     force_ = sum.force;
@@ -79,6 +82,13 @@ class EntrySide {
     return product < S(0) && product * product > S(0.5) * from.squaredNorm() * to.squaredNorm();
   }
 
+  /// Whether the deepest point, now at `position`, has moved along its exit, and the tool at all, by less
+  /// than both depths `both` [m].
+  [[nodiscard]] bool is_opposite(const Pose<S>& X, const Vec3<S>& position, S both) const noexcept {
+    const S along = exit_.dot(position - position_), square = both * both;
+    return along * along < square * exit_.squaredNorm() && (X * point_ - position_).squaredNorm() < square;
+  }
+
   template <class Sum>
   Status fade(const Pose<S>& X, Sum& sum) noexcept {
     const Vec3<S> now = X * point_;
@@ -90,7 +100,7 @@ class EntrySide {
 
   Vec3<S> exit_, position_;  // of the deepest point, on the side of entry; position: object coordinates [m]
   Vec3<S> force_, torque_;   // of the last tick [N], [N m]
-  Vec3<S> point_;            // tool point whose travel fades the wrench [m]
+  Vec3<S> point_;            // the same in tool coordinates; its travel fades the wrench [m]
   S depth_ = S(0);           // of the deepest point [m]
   S share_ = S(0);
   bool past_middle_ = false;  // now
