@@ -11,4 +11,6 @@
 #include <palpate/law/friction/slip.hpp>
 #include <palpate/luo_xiao/beam_skeleton.hpp>
 #include <palpate/luo_xiao/interpolation/phong.hpp>
+#include <palpate/resolved/contact_points.hpp>
+#include <palpate/resolved/elastic_contact.hpp>
 #include <palpate/solver/contact_solver.hpp>

@@ -28,14 +28,15 @@ struct Parts {
   static Body body() { return Body({.axes = Vec3<S>(S(0.06), S(0.04), S(0.04))}); }
   static Law law() { return Law({.c1 = 40, .c3 = S(3e8)}); }
   static Fibre fibre() { return Fibre({.K = S(0.562), .beta = S(0.75), .mu_dynamic = S(0.3)}); }
-  /// 10 x 10 points 1 mm apart; `gap` [m] more in the middle: two regions where it is above 0.5 mm.
-  static ToolPoints<S> face(S gap = 0) {
+  /// n x n points 1 mm apart; `gap` [m] more in the middle: two regions where it is above 0.5 mm.
+  static ToolPoints<S> face(S gap = 0, int n = 10) {
     std::vector<Vec3<S>> points;
-    for (int i = 0; i < 100; ++i) {
-      const S apart = i % 10 < 5 ? -gap / 2 : gap / 2;
-      points.emplace_back(S(1e-3) * (S(i % 10) - S(4.5)) + apart, S(0), S(1e-3) * (S(i / 10) - S(4.5)));
+    const S middle = S(n - 1) / 2;
+    for (int i = 0; i < n * n; ++i) {
+      const S apart = i % n < n / 2 ? -gap / 2 : gap / 2;
+      points.emplace_back(S(1e-3) * (S(i % n) - middle) + apart, S(0), S(1e-3) * (S(i / n) - middle));
     }
-    return ToolPoints<S>(points, std::vector<S>(100, S(1e-6)), {.contact_area = S(1e-4)});
+    return ToolPoints<S>(points, std::vector<S>(points.size(), S(1e-6)), {.contact_area = S(1e-4)});
   }
   static RegionSkeletons<Beams> beams() {
     std::vector<Vec3<S>> ends;
@@ -159,6 +160,25 @@ struct regions_shape {
     using T = Several<S>;
     return Scene<T, typename P::Shape>{T({P::body(), P::face(S(1e-3)), P::law(), P::fibre(), {1.5e-3}}),
                                        P::shape(normals)};
+  }
+};
+template <class S, class Friction>
+auto resolved_scene(const Friction& friction) {
+  using Force = ElasticContact<S, HalfSpace>;
+  using T = ContactSolver<typename Parts<S>::Body, Force, Friction, ContactPoints<64>>;
+  return Scene<T>{T({Parts<S>::body(), Parts<S>::face(S(0), 6),
+                     Force({.compliance = HalfSpace({.E = 1e5, .nu = 0.5})}), friction})};
+}
+struct resolved {
+  template <class S>
+  static auto make() {
+    return resolved_scene<S>(None{});
+  }
+};
+struct resolved_friction {
+  template <class S>
+  static auto make() {
+    return resolved_scene<S>(Parts<S>::fibre());
   }
 };
 

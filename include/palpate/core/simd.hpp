@@ -107,8 +107,10 @@ class Simd {
   template <std::convertible_to<T>... Rest>
     requires(N > 1 && sizeof...(Rest) + 2 == N)
   PALPATE_INLINE Simd(T x0, T x1, Rest... x) noexcept {
-    const T entries[]{x0, x1, static_cast<T>(x)...};
-    copy_from(entries);
+    if constexpr (registers == 1)  // from memory it would wait for the entries' stores
+      native[0] = Register{x0, x1, static_cast<T>(x)...};
+    else
+      copy_from(std::array<T, N>{x0, x1, static_cast<T>(x)...}.data());
   }
   /// N numbers from memory, wherever they lie.
   template <std::same_as<T> U>

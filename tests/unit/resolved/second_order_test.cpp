@@ -93,12 +93,14 @@ TEST_CASE("finite strain: Hertz's pressure has the strain d/R, and nu turns soft
     CAPTURE(nu);
     detail::PointSystem system(2000, static_cast<float>(1 - 2 * nu), false);
     std::vector<float> q;
+    system.begin_tick();
     system.clear();
     for (float x = -a; x <= a; x += width)
       for (float z = -a; z <= a; z += width) {
         const float s = 1 - (x * x + z * z) / (a * a);
         if (s <= 0) continue;
-        system.touch(Vec3<float>(x, 0, z), -Vec3<float>::UnitY(), s, width * width, 0);
+        const float volume = s * width * width;
+        system.touch(s, volume, volume * Vec3<float>(x, 0, z), -volume * Vec3<float>::UnitY());
         system.add(Vec3<float>(x, 0, z), -Vec3<float>::UnitY(), s, width * width);
         // p = 2 E' a/(pi R) sqrt(s), q = p A/(4 pi mu), E' = 2 mu/(1 - nu)
         const float per_modulus = 2 * a / (std::numbers::pi_v<float> * ball) * std::sqrt(s);

@@ -95,9 +95,17 @@ template <class V, std::size_t N>
 PALPATE_INLINE MaskOf<V> edge_blend(std::array<V, N> depths, ValueOf<V> size, V& depth,
                                     std::array<V, N>& weight) noexcept {
   using S = ValueOf<V>;
-  V least = depths[0];
-  for (std::size_t j = 1; j < N; ++j) least = (min)(least, depths[j]);
+  V least = (min)(depths[0], depths[1]), second = (max)(depths[0], depths[1]);
+  for (std::size_t j = 2; j < N; ++j) {
+    second = (min)(second, (max)(least, depths[j]));
+    least = (min)(least, depths[j]);
+  }
   const auto below = least > V{};
+  if (!any_of(below && second < S(2) * least)) {  // the nearest face alone
+    for (std::size_t j = 0; j < N; ++j) weight[j] = select(depths[j] < second, V(S(1)), V{});
+    depth = least;
+    return below;
+  }
   const S tiny = std::numeric_limits<S>::epsilon() / S(4) * size;  // > 0 and below any depth that counts
   for (V& face : depths) face = (max)(face, tiny);
   depth = (max)(least, tiny);

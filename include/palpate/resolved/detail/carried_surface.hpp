@@ -32,14 +32,15 @@ class CarriedSurface {
     weight_.resize(AlignedList<float>::padded(capacity));
   }
 
-  void clear() noexcept {
+  /// Positions are relative to `origin` [m].
+  void clear(const Vec3<S>& origin) noexcept {
+    origin_ = origin;
     size_ = 0;
     total_ = area_ = most_ = 0;
   }
   /// A loaded point at x [m], which the surface has followed by a [m], its q [m^2] and its cell [m^2]. Points
   /// of the same `group` follow each other and lie side by side; they count as one.
-  void add(std::uint32_t group, const Vec3<S>& x, float q, const Vec3<float>& a, float area) noexcept {
-    if (size_ == 0) origin_ = x;
+  void add(std::uint32_t group, const Vec3<float>& x, float q, const Vec3<float>& a, float area) noexcept {
     if (size_ == 0 || group != group_) {
       group_ = group;
       x_.set(size_, Vec3<float>::Zero()), a_.set(size_, Vec3<float>::Zero());
@@ -47,7 +48,7 @@ class CarriedSurface {
     }
     const std::size_t g = size_ - 1;
     weight_[g] += q;
-    x_.set(g, x_[g] + q * (x - origin_).template cast<float>());
+    x_.set(g, x_[g] + q * x);
     a_.set(g, a_[g] + q * a);
     total_ += q, area_ += area;
     most_ = (std::max)(most_, a.squaredNorm());

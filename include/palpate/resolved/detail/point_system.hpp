@@ -12,6 +12,7 @@
 /// Source: [johnson1985], ch. 3; [marin2014].
 
 #include <palpate/core/simd_math.hpp>
+#include <palpate/resolved/detail/bounded_list.hpp>
 #include <palpate/resolved/detail/half_space_kernel.hpp>
 #include <palpate/resolved/detail/vector_list.hpp>
 
@@ -35,38 +36,30 @@ class PointSystem {
   [[nodiscard]] static Vec3<float> apart() noexcept { return Vec3<float>::Constant(1e3f); }
 
   PointSystem(std::size_t capacity, float compressibility, bool has_friction)
-      : has_friction_(has_friction), b_(compressibility) {
+      : has_friction_(has_friction), b_(compressibility), groups_(capacity) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
-    for (auto* list : {&depth, &area_, &per_width_, &group_weight_, &back_}) list->resize(padded);
-    for (auto* list : {&m_, &x_at_, &x_, &n_, &group_x_, &group_n_, &backs_}) list->resize(padded);
+    for (auto* list : {&depth, &area_, &per_width_, &back_}) list->resize(padded);
+    for (auto* list : {&m_, &x_at_, &x_, &n_, &backs_}) list->resize(padded);
     if (!has_friction) matrix_.resize(capacity * (capacity / 2 + 2 * V::size()));  // columns, each rounded up
   }
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
   [[nodiscard]] float deepest() const noexcept { return deepest_; }  ///< of what was given to touch() [m]
-  void clear() noexcept {
-    size_ = groups_ = 0;
+  /// Before a tick's first touch().
+  void begin_tick() noexcept {
+    groups_.clear();
     deepest_ = volume_ = 0;
   }
-  /// Any point beneath the surface counts for the direction of pressing: x, inward normal n, depth along it,
-  /// area of its cell. Points of the same `group` follow each other and lie side by side.
-  void touch(const Vec3<float>& x, const Vec3<float>& n, float deep, float area,
-             std::uint32_t group) noexcept {
-    const float weight = deep * area;
-    deepest_ = (std::max)(deepest_, deep);
-    volume_ += weight;
-    if (groups_ == 0 || group != last_group_) {
-      last_group_ = group;
-      group_weight_[groups_] = 0;
-      for (auto* list : {&group_x_, &group_n_}) list->set(groups_, Vec3<float>::Zero());
-      ++groups_;
-    }
-    const std::size_t g = groups_ - 1;
-    group_weight_[g] += weight;
-    group_x_.set(g, group_x_[g] + weight * x);
-    group_n_.set(g, group_n_[g] + weight * n);
+  /// Any point beneath the surface counts for the direction of pressing: a group of points that lie side by
+  /// side, the deepest [m], the sum of depth by area [m^3], and of positions and inward normals by these.
+  /// Precondition: fewer groups than the capacity.
+  void touch(float deepest, float volume, const Vec3<float>& volume_x, const Vec3<float>& volume_n) noexcept {
+    deepest_ = (std::max)(deepest_, deepest);
+    volume_ += volume;
+    groups_.push_back({volume_x / volume, volume_n});
   }
+  void clear() noexcept { size_ = 0; }
   /// A point that is solved for, after all touch(). Precondition: fewer than the capacity.
   void add(const Vec3<float>& x, const Vec3<float>& n, float deep, float area) noexcept {
     x_at_.set(size_, x);
@@ -154,10 +147,10 @@ class PointSystem {
   [[nodiscard]] PALPATE_INLINE SimdVec3<W> direction(const SimdVec3<W>& x,
                                                      const SimdVec3<W>& n) const noexcept {
     SimdVec3<W> total{W(0.f), W(0.f), W(0.f)};
-    for (std::size_t g = 0; g < groups_; ++g) {
-      const SimdVec3<W> r = each<W>(group_x_[g]) - x;
+    for (const Group& group : groups_) {
+      const SimdVec3<W> r = each<W>(group.x) - x;
       const W far = 1.f + per_size2_ * dot(r, r);
-      total += (1.f / (far * far)) * each<W>(group_n_[g]);
+      total += (1.f / (far * far)) * each<W>(group.n);
     }
     const SimdVec3<W> m = inverse_sqrt(dot(total, total)) * total;
     // From 37 to 60 degrees off it goes over to the surface's own normal, as over an edge of the body.
@@ -173,6 +166,10 @@ class PointSystem {
   AlignedList<float> depth;  ///< along the directions of pressing [m]
 
  private:
+  struct Group {
+    Vec3<float> x, n;  // mean position, sum of normals, by depth and area
+  };
+
   [[nodiscard]] static std::size_t first_of(std::size_t j) noexcept { return j / V::size() * V::size(); }
 
   // 0 up to lane k, then 1.
@@ -188,7 +185,6 @@ class PointSystem {
   void direct() noexcept {
     for (std::size_t i = 0; i < size_; ++i) per_width_[i] = 1 / std::sqrt(area_[i]);
     per_size2_ = deepest_ / (2 * volume_);
-    for (std::size_t g = 0; g < groups_; ++g) group_x_.set(g, group_x_[g] / group_weight_[g]);
     for (std::size_t i = 0; i < stride_; i += V::size()) {
       const SimdVec3<V> n = n_.load(i), m = direction(x_at_.load(i), n);
       const V deep = V(&depth[i]) / dot(m, n);
@@ -225,36 +221,45 @@ class PointSystem {
     }
     return to;
   }
-  // u_i += K_ij P_j of all i > j; what these do to j, to backs_.
+  // u_i += K_ij P_j of all i > j; what these do to j, to backs_. Two columns at a time share their loads.
   template <bool coupled>
   void add_pairs(const VectorList& P, VectorList& u) noexcept {
-    for (std::size_t j = 0; j < size_; ++j) {
-      const Vec3<float> x = x_[j];
-      const SimdVec3<V> m = each(m_[j]), own = each(P[j]);
-      const float area = area_[j];
-      SimdVec3<V> back{};
-      V keep = after(j - first_of(j));
-      for (std::size_t i = first_of(j); i < stride_; i += V::size(), keep = V(1.f)) {
-        PointPair<V> p = between(i, x, m_.load(i), m, area);
-        p.inverse *= keep;
-        u.store(i, pushed<coupled>(b_, p, own, u.load(i)));
-        back = pushed<coupled>(b_, coupled ? reversed(p) : p, P.load(i), back);
+    struct Column {
+      SimdVec3<V> x, m, own, back;
+      V area, keep;
+    };
+    const auto column_of = [&](std::size_t j) PALPATE_INLINE_LAMBDA {
+      return Column{each(x_[j]), each(m_[j]), each(P[j]), {}, V(area_[j]), after(j - first_of(j))};
+    };
+    for (std::size_t j = 0; j < size_; j += 2) {
+      Column first = column_of(j), second = column_of(j + 1);  // beyond size(): no load, and apart
+      for (std::size_t i = first_of(j); i < stride_; i += V::size()) {
+        const SimdVec3<V> x = x_.load(i), m = m_.load(i), load = P.load(i);
+        SimdVec3<V> moved = u.load(i);
+        for (Column* const c : {&first, &second}) {
+          PointPair<V> p = point_pair(x - c->x, m, c->m, c->area);
+          p.inverse *= c->keep;
+          c->keep = V(1.f);
+          moved = pushed<coupled>(b_, p, c->own, moved);
+          c->back = pushed<coupled>(b_, coupled ? reversed(p) : p, load, c->back);
+        }
+        u.store(i, moved);
       }
-      backs_.set(j, sum_of(back));
+      backs_.set(j, sum_of(first.back));
+      backs_.set(j + 1, sum_of(second.back));
     }
   }
 
-  std::size_t size_ = 0, stride_ = 0, groups_ = 0;
-  std::uint32_t last_group_ = 0;
+  std::size_t size_ = 0, stride_ = 0;
   bool has_friction_;
   float b_ = 0;  // 1 - 2 nu
   float deepest_ = 0, volume_ = 0,
         per_size2_ = 1;  // the volume pressed over the depth: a ball's contact area
-  AlignedList<float> area_, per_width_, group_weight_;
-  VectorList m_, x_at_, x_, n_;   // directions of pressing, the points, their feet, normals
-  VectorList group_x_, group_n_;  // sums over a group by depth and area; x: the mean
-  AlignedList<float> matrix_;     // without friction: pairs i > j by column
-  AlignedList<float> back_;       // of displace(), without friction and with it
+  AlignedList<float> area_, per_width_;
+  VectorList m_, x_at_, x_, n_;  // directions of pressing, the points, their feet, normals
+  BoundedList<Group> groups_;
+  AlignedList<float> matrix_;  // without friction: pairs i > j by column
+  AlignedList<float> back_;    // of displace(), without friction and with it
   VectorList backs_;
 };
 

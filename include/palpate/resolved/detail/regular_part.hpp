@@ -20,6 +20,7 @@ namespace palpate::detail {
 /// w_kl between nodes is read from the influence functions when a node comes in, and kept.
 class RegularPart {
  public:
+  using V = VectorList::V;
   static constexpr bool active = true;
   /// Nodes beneath a contact; points beyond them have no regular part.
   static constexpr std::size_t max_nodes = 128;
@@ -33,9 +34,9 @@ class RegularPart {
         index_(max_nodes, 0),
         kept_(max_nodes * max_nodes, Mat3<float>::Zero()) {
     weights_.resize(capacity);
-    w_.resize(capacity);
+    for (auto* list : {&w_, &w_step_}) list->resize(capacity);
     const std::size_t padded = AlignedList<float>::padded(4 * max_nodes);
-    for (auto* list : {&load_, &u_, &u_beside_}) list->resize(padded);
+    for (auto* list : {&load_, &u_, &u_of_all_, &u_beside_}) list->resize(padded);
     matrix_.resize(padded * 3 * max_nodes);
   }
 
@@ -108,20 +109,25 @@ class RegularPart {
     gather([&](std::size_t i) { return Vec3<float>(q[i] * system.direction(i)); });
     for (std::size_t i = 0; i < size_; ++i) u[i] += system.direction(i).dot(of(i));
   }
-  /// u += w by loads P.
+  /// No loads yet that response() and normal_at() tell of.
+  void begin_response() noexcept {
+    for (std::size_t i = 0; i < size_; i += V::size()) w_.store(i, {});
+    std::fill_n(u_of_all_.data(), stride_, 0.f);
+  }
+  /// u += w by loads P, which come to those of response().
   void add(const PointSystem&, const VectorList& P, VectorList& u) noexcept {
-    gather([&](std::size_t i) { return P[i]; });
-    for (std::size_t i = 0; i < size_; ++i) u.set(i, u[i] + of(i));
+    extend(P);
+    for (std::size_t i = 0; i < size_; i += V::size()) u.store(i, u.load(i) + w_step_.load(i));
   }
-  /// w at the points by loads P, and what normal_at() gives.
+  /// Of loads P alone.
   void respond(const VectorList& P) noexcept {
-    gather([&](std::size_t i) { return P[i]; });
-    for (std::size_t i = 0; i < size_; ++i) w_.set(i, of(i));
+    begin_response();
+    extend(P);
   }
-  [[nodiscard]] const VectorList& response() const noexcept { return w_; }  ///< of the last respond()
+  [[nodiscard]] const VectorList& response() const noexcept { return w_; }  ///< w at the points
   /// The nodes' displacements by what other tools push with.
   void gather_beside() noexcept {
-    for (std::size_t i = 0; i < stride_; i += Group::size()) store(&load_[i], Group{});
+    std::fill_n(load_.data(), stride_, 0.f);
     for (std::size_t k = 0; k < beside_.size(); ++k) store(&load_[4 * k], beside_[k]);
     multiply(u_beside_);
   }
@@ -133,7 +139,6 @@ class RegularPart {
   template <class Given>
   [[nodiscard]] Vec3<float> slope(const PointSystem& system, const float* q,
                                   const Given& given) const noexcept {
-    using V = VectorList::V;
     const auto w_at = [&](std::size_t i) PALPATE_INLINE_LAMBDA {
       return dot(system.normals().load(i), w_.load(i) + given.load(i));
     };
@@ -163,13 +168,13 @@ class RegularPart {
     const float size = spread.trace();                                // powers of small numbers would be 0
     return (spread / size).inverse() * (sum_of(with_w) / (load * size));
   }
-  /// w along m at a further point, by the loads of respond(), with others' loads if there are any.
+  /// w along m at a further point, by the loads of response(), with others' loads if there are any.
   template <class Body>
   [[nodiscard]] float normal_at(const Body& body, const Vec3<double>& x, std::uint32_t& triangle,
                                 const Vec3<float>& m) noexcept {
     Weights weights;
     place(body.field(), x, triangle, weights, false);
-    const float w = m.dot(at(weights, u_));
+    const float w = m.dot(at(weights, u_of_all_));
     return beside_.empty() ? w : w + m.dot(at(weights, u_beside_));
   }
 
@@ -253,13 +258,22 @@ class RegularPart {
   template <class Load>
   void gather(const Load& load) noexcept {
     float* const f = load_.data();
-    for (std::size_t i = 0; i < stride_; i += Group::size()) store(f + i, Group{});
+    std::fill_n(f, stride_, 0.f);
     for (std::size_t i = 0; i < size_; ++i) {
       const Vec3<float> P = load(i);
       const Four P4(P.x(), P.y(), P.z(), 0.f);
       for (const Weight& w : weights_[i]) store(f + 4 * w.node, Four(f + 4 * w.node) + Four(w.value) * P4);
     }
     multiply(u_);
+  }
+  // Takes loads P into the response.
+  void extend(const VectorList& P) noexcept {
+    gather([&](std::size_t i) { return P[i]; });
+    for (std::size_t i = 0; i < stride_; i += V::size())
+      (V(&u_of_all_[i]) + V(&u_[i])).copy_to(&u_of_all_[i]);
+    for (std::size_t i = 0; i < size_; ++i) w_step_.set(i, of(i));
+    for (std::size_t i = size_; i < padded<V>(size_); ++i) w_step_.set(i, Vec3<float>::Zero());
+    for (std::size_t i = 0; i < size_; i += V::size()) w_.store(i, w_.load(i) + w_step_.load(i));
   }
   // w at point i, of what was gathered last.
   [[nodiscard]] Vec3<float> of(std::size_t i) const noexcept { return at(weights_[i], u_); }
@@ -288,9 +302,10 @@ class RegularPart {
   std::vector<std::uint16_t> index_;    // of a slot, among those in use
   std::vector<Mat3<float>> kept_;       // between slots
   std::vector<Weights> weights_;        // of the points
-  VectorList w_;                        // at the points, of respond()
+  VectorList w_, w_step_;               // at the points: of all loads, of those that came last
   FixedVector<std::uint16_t, max_nodes> used_, was_used_;
-  AlignedList<float> load_, u_, u_beside_;  // of the nodes in use, four numbers each
+  AlignedList<float> load_, u_;             // of the nodes in use, four numbers each
+  AlignedList<float> u_of_all_, u_beside_;  // likewise, of response() and by other tools' loads
   FixedVector<Four, max_nodes> beside_;     // loads of other tools, likewise
   AlignedList<float> matrix_;               // by column
   std::size_t size_ = 0, stride_ = 0;

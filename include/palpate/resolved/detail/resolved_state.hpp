@@ -17,6 +17,7 @@
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/resolved/detail/static_strength.hpp>
 #include <palpate/resolved/detail/tick_change.hpp>
+#include <palpate/resolved/detail/tool_surface.hpp>
 #include <palpate/resolved/detail/touching_point.hpp>
 #include <palpate/resolved/elastic_contact.hpp>
 
@@ -90,7 +91,7 @@ class ResolvedState {
   [[nodiscard]] float area() noexcept {
     unloaded_.clear();
     for (const Touching& c : touching_)
-      if (!points_[c.point].loaded) unloaded_.add(relative(c.x));
+      if (!points_[c.point].loaded) unloaded_.add(c.x);
     unloaded_.pad();
     return contact_area(system_, pressure_, unloaded_);
   }
@@ -98,19 +99,31 @@ class ResolvedState {
   void begin_tick() noexcept {
     ++tick_;
     touching_.clear();
+    has_room_ = true;
+    system_.begin_tick();
   }
   /// Where friction has carried the surface.
   [[nodiscard]] const auto& carried() const noexcept { return carried_; }
-  /// Tool point i, over x in object coordinates (carried().before()), is `depth` in the body, whose inward
-  /// normal is m; the tool's outward one. False where there is no place left.
-  bool touch(std::uint32_t i, const Vec3<S>& x, S depth, const Vec3<S>& m, const Vec3<S>& outward) noexcept {
-    if (touching_.full()) return false;
-    touching_.push_back(
-        {i, x, m.template cast<float>(), outward.template cast<float>(), static_cast<float>(depth)});
-    Point& p = points_[i];
-    if (p.tick + 1 != tick_) p = {};
-    p.tick = tick_;
-    return true;
+  /// Tool points from `begin` on, a leaf, over x in object coordinates (carried().before()), are in the body;
+  /// `rotation`: of the tool. Returns how deep [m].
+  S touch(const ToolSurface<S>& surface, std::uint32_t begin, const Mat3<float>& rotation,
+          const PointBatch<S>& x, const PenetrationBatch<S>& in) noexcept {
+    if (touching_.empty()) origin_ = Vec3<S>(x.x[0], x.y[0], x.z[0]);
+    const TouchingLeaf leaf = surface.find(begin, rotation, x, in, origin_);
+    if (!(leaf.volume > 0)) return S(0);
+    if (!touching_.full()) system_.touch(leaf.deepest, leaf.volume, leaf.volume_x, leaf.volume_m);
+    S deepest = S(0);
+    for (std::uint32_t k = 0; k < batch_size; ++k) {
+      if (!(leaf.depth[k] > 0)) continue;
+      deepest = (std::max)(deepest, in.depth[k]);
+      has_room_ = !touching_.full();
+      if (!has_room_) continue;
+      touching_.push_back(leaf.point(k, begin + k));
+      Point& p = points_[begin + k];
+      if (p.tick + 1 != tick_) p = {};
+      p.tick = tick_;
+    }
+    return deepest;
   }
 
   /// Solves for the loads with the tool at X. False where there is no room for all that acts.
@@ -142,14 +155,13 @@ class ResolvedState {
                                                                 system_.depth.data(), beside_)
                              : 1.f);
       solve_inside(force, friction, tolerance);
-      if constexpr (RegularPart::active) regular_.respond(result_.load);
       if constexpr (Strain::active)
         strain_.measure(system_, pressure_.q.data(), pressure_.r.data(), regular_.response(), beside_);
       const bool again = Strain::active && first && round == 0;  // the strain was not known
       if (round == most_rounds || !take_in(force, tool, tolerance, again)) break;
     }
     finish(tool);
-    bool all = true;
+    bool all = has_room_;
     if constexpr (RegularPart::active) all = regular_.has_all();
     if constexpr (Beside::active) {
       all = all && beside_.has_all();
@@ -169,30 +181,22 @@ class ResolvedState {
 
   using V = VectorList::V;
   using Point = PointMemory;
-  using Touching = TouchingPoint<S>;
+  using Touching = TouchingPoint;
 
   [[nodiscard]] std::size_t size() const noexcept { return inside_.size(); }
-  [[nodiscard]] Vec3<float> relative(const Vec3<S>& x) const noexcept {
-    return (x - origin_).template cast<float>();
-  }
   void forget() noexcept {
     slides_ = false;
     strength_ = {};
-    if constexpr (has_friction) result_.step = 0, carried_.clear();
+    if constexpr (has_friction) result_.step = 0, carried_.clear(origin_);
     if constexpr (Strain::active) strain_.forget();
     if constexpr (Beside::active) beside_.set({});
   }
   [[nodiscard]] Point& point(std::size_t i) noexcept { return points_[touching_[inside_[i]].point]; }
-
   void build(const Force& force, const ToolPoints<S>& tool) noexcept {
     system_.clear();
-    origin_ = touching_[0].x;
-    for (const Touching& at : touching_)
-      system_.touch(relative(at.x), at.m, at.depth, static_cast<float>(tool.area(at.point)),
-                    at.point / static_cast<std::uint32_t>(batch_size));  // a leaf of the tool's points
     for (const std::uint32_t c : inside_) {
       const Touching& at = touching_[c];
-      system_.add(relative(at.x), at.m, at.depth, static_cast<float>(tool.area(at.point)));
+      system_.add(at.x, at.m, at.depth, static_cast<float>(tool.area(at.point)));
     }
     system_.build();
     for (std::size_t i = 0; i < size(); ++i) {
@@ -214,6 +218,7 @@ class ResolvedState {
   void solve_inside(const Force& force, const Friction& friction, float tolerance) noexcept {
     const int iterations = force.params().iterations;
     Remainder left;
+    if constexpr (has_friction && RegularPart::active) regular_.begin_response();
     if constexpr (!has_friction)
       left = solve_pressures(size(), pressure_, system_.depth.data(), tolerance, iterations,
                              [this](const float* q, float* u) noexcept { displace(q, u); });
@@ -234,6 +239,7 @@ class ResolvedState {
         (dot(m, result_.u.load(i)) - depth).copy_to(&pressure_.r[i]);
       }
     }
+    if constexpr (!has_friction && RegularPart::active) regular_.respond(result_.load);
     residual_.iterations += left.iterations;
     residual_.relative = left.norm * static_cast<float>(force.params().tolerance) / tolerance;
   }
@@ -269,16 +275,16 @@ class ResolvedState {
       Point& p = points_[at.point];
       // Gaps change little in a tick: each is looked at in every eighth.
       if ((tick_ + at.point) % 8 != 0) continue;
-      const Vec3<float> m = system_.direction_at(relative(at.x), at.m);
+      const Vec3<float> m = system_.direction_at(at.x, at.m);
       const float depth = at.depth / m.dot(at.m);
-      const Vec3<S> foot = at.x - (depth * m).template cast<S>();
-      float gap = system_.normal_displacement_at(pressure_.q.data(), relative(foot), m,
+      const Vec3<float> foot = at.x - depth * m;
+      float gap = system_.normal_displacement_at(pressure_.q.data(), foot, m,
                                                  static_cast<float>(tool.area(at.point))) -
                   strain_.factor() * depth;
-      if constexpr (Beside::active) gap += m.dot(beside_.displacement_at(relative(foot), m));
+      if constexpr (Beside::active) gap += m.dot(beside_.displacement_at(foot, m));
       if constexpr (RegularPart::active)
-        gap += regular_.normal_at(force.compliance(), foot.template cast<double>(),
-                                  points_[at.point].triangle, m);
+        gap += regular_.normal_at(force.compliance(),
+                                  (origin_ + foot.template cast<S>()).template cast<double>(), p.triangle, m);
       p.sunk = gap + at.depth;
       if (gap < -tolerance / 10) {
         inside_.push_back(c);  // sorted below; never beyond the capacity, which is that of touching_
@@ -338,7 +344,7 @@ class ResolvedState {
 
   void finish(const ToolPoints<S>& tool) noexcept {
     const auto [total, sticking] = react();
-    if constexpr (has_friction) carried_.clear();
+    if constexpr (has_friction) carried_.clear(origin_);
     for (std::size_t i = 0; i < size(); ++i) {
       const Touching& at = touching_[inside_[i]];
       Point& p = point(i);
@@ -384,7 +390,7 @@ class ResolvedState {
   Vec3<S> origin_;
   S per_load_ = 0;  // 4 pi mu [Pa]
   std::uint32_t tick_ = 1;
-  bool slides_ = false;
+  bool slides_ = false, has_room_ = true;
   PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<has_friction, StaticStrength, Absent<6>> strength_;
 
  public:

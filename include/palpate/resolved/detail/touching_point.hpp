@@ -51,13 +51,12 @@ struct MemoryLists {
 };
 
 /// A point that is beneath the surface in this tick.
-template <Real S>
 struct TouchingPoint {
   std::uint32_t point;  ///< of the tool
-  Vec3<S> x;            ///< where friction has not carried the surface, object coordinates [m]
+  float depth;          ///< along m [m]
+  Vec3<float> x;        ///< where friction has not carried the surface, from the tick's origin [m]
   Vec3<float> m;        ///< the surface's inward normal
   Vec3<float> outward;  ///< the tool's normal; m where it is not known
-  float depth;          ///< along it [m]
 };
 
 }  // namespace palpate::detail

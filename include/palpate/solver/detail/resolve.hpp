@@ -17,7 +17,7 @@ template <ResolvedTopology Contacts, Real S, class Force, bool has_friction>
 class ResolvedCollector {
  public:
   ResolvedCollector(const Contacts&, const ToolPoints<S>& tool, const Force& force)
-      : body_(force.compliance()), tool_points_(tool.size()) {}
+      : body_(force.compliance()), tool_points_(tool.size()), surface_(tool) {}
 
   using Body = typename Force::Compliance;
   using State = ResolvedState<S, Body, has_friction, Contacts::max_beside>;
@@ -31,31 +31,11 @@ class ResolvedCollector {
                TickResult<S>& result) const noexcept {
     result.status = Status::ok;
     state.begin_tick();
-    const std::span<const Vec3<S>> outward = tool.vector_areas();
+    const Mat3<float> rotation = X.rotation.template cast<float>();
     S deepest = S(0);
     const auto touch = [&](std::uint32_t begin, const PointBatch<S>& x,
                            const PenetrationBatch<S>& in) noexcept {
-      for (std::uint32_t k = 0; k < batch_size; ++k) {
-        if (!(in.depth[k] > S(0))) continue;
-        Vec3<S> m(-in.gradient_x[k], -in.gradient_y[k], -in.gradient_z[k]);
-        const S length = m.norm();
-        if (!(length > S(0))) continue;
-        m /= length;
-        // What faces away from the body cannot press on it; a wall fades out over some ten degrees, and
-        // is out before it is upright: rounding would bring it in and out.
-        S depth = in.depth[k];
-        Vec3<S> out = m;
-        if (!outward.empty()) {
-          out = X.rotation * outward[begin + k];
-          out /= out.norm();
-          const S facing = out.dot(m) - S(1e-4L), whole = S(0.2L);
-          if (!(facing > S(0))) continue;
-          if (facing < whole) depth *= facing / whole;
-        }
-        deepest = (std::max)(deepest, in.depth[k]);
-        if (!state.touch(begin + k, Vec3<S>(x.x[k], x.y[k], x.z[k]), depth, m, out))
-          result.status |= Status::point_overflow;
-      }
+      deepest = (std::max)(deepest, state.touch(surface_, begin, rotation, x, in));
     };
     if constexpr (has_friction) {
       const auto before = [&](const PointBatch<S>& x) noexcept { return state.carried().before(x); };
@@ -112,6 +92,7 @@ class ResolvedCollector {
 
   Body body_;
   std::size_t tool_points_;
+  ToolSurface<S> surface_;
 };
 
 /// What finds and adds up contacts, by topology.
