@@ -7,6 +7,7 @@
 #include <palpate/core/fixed_vector.hpp>
 #include <palpate/resolved/contact_points.hpp>
 #include <palpate/resolved/detail/resolved_state.hpp>
+#include <palpate/resolved/detail/tool_surface.hpp>
 #include <palpate/resolved/elastic_contact.hpp>
 #include <palpate/solver/detail/gather.hpp>
 #include <palpate/solver/tick_result.hpp>
