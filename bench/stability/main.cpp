@@ -3,7 +3,8 @@
 /// @file Device, hand and solver in closed loop, simulated: a point on a flat object of stiffness K, with
 /// friction; without the chain to the motors, with a passivity controller, with a virtual coupling. Rows: what a
 /// hand gains, whether it buzzes at rest, and the stiffness felt. Then, for each device, the largest K up to
-/// which nothing is gained and nothing buzzes, in a stiff hand and a loose one. All of it is simulated time: the
+/// which nothing is gained and nothing buzzes, in a stiff hand and a loose one; and in how many of many plays, also
+/// with ticks that are lost or late, the tool goes on vibrating. All of it is simulated time: the
 /// same figures in every run. The tables of docs/stability.md are written beside the CSV file (.md).
 
 #include "scenes.hpp"
@@ -265,6 +266,55 @@ int main(int argc, char** argv) {
       std::fprintf(table, "\n");
     }
   }
+
+  // ---- who goes on vibrating
+  struct Ticks {
+    const char* name;
+    double rate, jitter, lost;
+  };
+  const std::vector<Ticks> ticks = out.quick ? std::vector<Ticks>{{"even", 1000, 0, 0}}
+                                             : std::vector<Ticks>{{"even", 500, 0, 0},
+                                                                  {"even", 1000, 0, 0},
+                                                                  {"even", 4000, 0, 0},
+                                                                  {"30 % jitter", 1000, 0.3, 0},
+                                                                  {"5 % lost", 1000, 0, 0.05}};
+  const std::array arms{NamedDevice{"0.3 N s/m and 0.1 N", {.max_force = 8.5}, 0},
+                        NamedDevice{"0.04 N alone", {.viscous = 0, .coulomb = 0.04, .max_force = 8.5}, 0},
+                        of};
+  std::fprintf(
+      table,
+      "\nRows of stiffness (1,000 to 10,000 N/m) and delay in which a press or a slide ends vibrating, "
+      "in grips of 1, 0.3, 0.1:\n\n"
+      "| arm | ticks | rate [Hz] | rows | none | passivity | felt, mean |\n"
+      "| --- | --- | --- | --- | --- | --- | --- |\n");
+  for (const NamedDevice& arm : arms)
+    for (const Ticks& t : ticks) {
+      int rows = 0, vibrating[2]{}, presses = 0;
+      double sum = 0;
+      for (const double K : {1000.0, 2500.0, 4000.0, 5200.0, 10000.0})
+        for (const int delay : delays) {
+          ++rows;
+          for (const Chain chain : {Chain::none, Chain::passivity}) {
+            int most = 0;
+            for (const Play play : {Play::press, Play::slide})
+              for (const double grip : {1.0, 0.3, 0.1})
+                for (std::uint64_t seed = 1; seed <= (t.jitter + t.lost > 0 ? 3 : 1); ++seed) {
+                  NamedDevice device = arm;
+                  device.device.jitter = t.jitter, device.device.lost = t.lost, device.device.seed = seed;
+                  const PlayFigures f = run(chain, {play, K, t.rate, delay, grip}, device);
+                  most = (std::max)(most, f.turns);
+                  if (chain == Chain::passivity && play == Play::press) sum += felt(f, K), ++presses;
+                }
+            vibrating[chain == Chain::passivity] += most >= test::vibrates_from;
+          }
+        }
+      std::fprintf(table, "| %s | %s | %g | %d | %d | %d | %.2f |\n", arm.name, t.name, t.rate, rows,
+                   vibrating[0], vibrating[1], sum / presses);
+      char row[160];
+      std::snprintf(row, sizeof row, "vibrates,%s,%s,%s,,%g,,,,,,,%.3f", arm.name, name_of(Chain::passivity),
+                    t.name, t.rate, sum / presses);
+      out.row(row, "rows", vibrating[1]);
+    }
   std::fclose(table);
   return out.failures > 0;
 }

@@ -364,6 +364,28 @@ TEST_CASE("stress: with jitter of 30 % or a tick in twenty lost a soft scene doe
   }
 }
 
+// Far above 2 f_c/Delta, 2,700 and 5,200 N/m, an arm with little friction would vibrate for ever on what quantised
+// positions hide; the contact is softened until it does not.
+TEST_CASE("stress: a scene too stiff for the arm's friction does not go on vibrating") {
+  LoopDevice smooth = plain(1000, 0), light = plain(1000, 0);
+  smooth.viscous = 0, smooth.coulomb = 0.04;
+  light.mass = 0.045, light.viscous = 0.005, light.coulomb = 0.06, light.resolution = 2.3e-5;
+  for (const double K : {5200.0, 10000.0}) {
+    const Scene scene = point_on_block(K);
+    for (const Play play : {Play::press, Play::slide})
+      for (LoopDevice device : {smooth, light})
+        for (const int delay : {0, 1, 2})
+          for (const double grip : {1.0, 0.3, 0.1}) {
+            device.delay = delay;
+            const PlayFigures f = test::play(device, {}, {play, scene.ground, grip}, scene.chained(device));
+            INFO(std::string(test::times_of(play).name), ", K ", K, ", delay ", delay, ", grip ", grip,
+                 ", friction ", device.coulomb);
+            CHECK(f.turns < test::vibrates_from);
+            CHECK(f.to_hand <= 0);
+          }
+  }
+}
+
 // The coupling alone, as stiff as the device answers passively in translation and in rotation, between a hand that
 // taps, slides, twists and rocks and two pins on a surface that the device cannot answer.
 TEST_CASE(

@@ -144,6 +144,7 @@ class ClosedLoop {
     since_ += elapsed;
     ++window_.ticks;
     window_.low = window_.low.cwiseMin(x), window_.high = window_.high.cwiseMax(x);
+    count_turns();
     window_.force += acting.force, window_.torque += acting.torque, window_.position += x;
     if (device_.inertia > 0) {
       const V turn = turn_of(R);
@@ -160,13 +161,16 @@ class ClosedLoop {
   /// What is measured from here on.
   void begin_window() {
     window_ = Window{};
-    window_.low = window_.high = x;
+    window_.low = window_.high = window_.farthest = x;
     window_.low_turn = window_.high_turn = turn_of(R);
   }
   /// How far the tip went to and fro since then, along the axis along which it is most [m]; likewise its turn
   /// [rad].
   [[nodiscard]] double amplitude() const { return (window_.high - window_.low).maxCoeff(); }
   [[nodiscard]] double angular_amplitude() const { return (window_.high_turn - window_.low_turn).maxCoeff(); }
+  /// How often it turned after more than two encoder steps, along the axis along which it did most: a tool that
+  /// vibrates goes on to, one that settles does so a few times.
+  [[nodiscard]] int turns() const { return *std::max_element(window_.turns.begin(), window_.turns.end()); }
   /// Means since then.
   [[nodiscard]] Wrench<double> mean_wrench() const {
     return {window_.force / window_.ticks, window_.torque / window_.ticks};
@@ -178,7 +182,20 @@ class ClosedLoop {
     V low = V::Zero(), high = V::Zero(), low_turn = V::Zero(), high_turn = V::Zero();
     V force = V::Zero(), torque = V::Zero(), position = V::Zero();
     double ticks = 0;
+    V farthest = V::Zero(), side = V::Ones();  // along each axis: since the last turn, and which way
+    std::array<int, 3> turns{};
   };
+  void count_turns() {
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      double &farthest = window_.farthest[k], &side = window_.side[k];
+      if (side * (x[k] - farthest) > 0) {
+        farthest = x[k];
+      } else if (side * (farthest - x[k]) > 2 * device_.resolution) {
+        farthest = x[k], side = -side;
+        ++window_.turns[static_cast<std::size_t>(k)];
+      }
+    }
+  }
 
   [[nodiscard]] double quantised(const V& force, const V& torque) const {
     return (device_.resolution * force.lpNorm<1>() + device_.angular_resolution * torque.lpNorm<1>()) / 2;

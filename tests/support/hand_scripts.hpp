@@ -112,11 +112,15 @@ struct PlayFigures {
   double to_hand = 0;            ///< over all of it [J]
   double amplitude = 0;          ///< at rest: how far to and fro [m]
   double angular_amplitude = 0;  ///< [rad]
+  int turns = 0;                 ///< at rest: ClosedLoop::turns()
   double quantised = 0;          ///< ClosedLoop::most_quantised() [J]
   double deepest = 0;            ///< of the stylus below the surface [m]
   Wrench<double> sent;           ///< mean at rest
   Vec3<double> place;            ///< mean at rest [m]
 };
+
+/// From so many turns on at rest a tool vibrates.
+inline constexpr int vibrates_from = 4;
 
 /// Plays with a loop of `device` and `hand`. `toss`: speed at which the stylus flies at the surface [m/s].
 template <class Control>
@@ -138,6 +142,7 @@ template <class Control>
     loop.begin_window();
     run(times.rest_to);
     f.amplitude = loop.amplitude(), f.angular_amplitude = loop.angular_amplitude();
+    f.turns = loop.turns();
     f.sent = loop.mean_wrench(), f.place = loop.mean_position();
   }
   run(times.end);

@@ -6,6 +6,7 @@
 #include <palpate/contact/contact_state.hpp>
 #include <palpate/core/pose.hpp>
 #include <palpate/device/detail/turned.hpp>
+#include <palpate/device/detail/vibration_limit.hpp>
 #include <palpate/device/device_model.hpp>
 
 #include <algorithm>
@@ -61,6 +62,10 @@ template <Real S>
 /// (predictions err by what a hand accelerates in d + 1 ticks) is paid back first, also by the arm's losses
 /// in free air.
 ///
+/// What quantised positions hide from B may keep a stiff contact vibrating; softened() then asks for less
+/// until it does not (detail/vibration_limit.hpp). It is the stiffness that has to fall, not the largest
+/// force, so the chain scales what the scene demands, before all limits.
+///
 /// The wrench and its work are about the stylus point in the device's frame: what is really sent, after all
 /// other limits. A pose, wrench or energy that is not finite: a zero wrench, and all is forgotten. noexcept,
 /// no heap; same inputs, same bits.
@@ -70,7 +75,9 @@ class PassivityController {
   static constexpr bool active = true;
 
   /// Reports a value of the model that is out of range.
-  explicit PassivityController(const DeviceModel<S>& device) : device_(device) { check(device); }
+  explicit PassivityController(const DeviceModel<S>& device) : device_(device), vibration_(device) {
+    check(device);
+  }
 
   /// The wrench to send. `stylus`: its pose when the wrench was worked out, device frame; `stored`: of the
   /// contacts, in joules of the hand; `dt` [s]: since the last call, 0 is allowed.
@@ -101,6 +108,8 @@ class PassivityController {
     if (left + in_flight < stored.least) scale_ = (std::max)(S(0), left + in_flight) / stored.least;
     scale_ = (std::min)(scale_, spends(wrench, v, (std::max)(S(0), left), tick));
     if (stored.most > S(0)) scale_ = (std::min)(scale_, last + dt / recovery);
+    const Wrench<S>& held = sent(device_.delay + 1);
+    vibration_.observe(held, work(held, moved), stylus.translation, stored.most > S(0), dt);
 
     const Wrench<S> out = scale_ < S(1) ? Wrench<S>{scale_ * wrench.force, scale_ * wrench.torque} : wrench;
     send(out);
@@ -109,6 +118,8 @@ class PassivityController {
 
   /// s of the last tick.
   [[nodiscard]] S scale() const noexcept { return scale_; }
+  /// Scale of what the scene demands in the next tick, 1 unless the tool vibrates.
+  [[nodiscard]] S softened() const noexcept { return vibration_.scale(); }
   /// B [J].
   [[nodiscard]] S budget() const noexcept { return budget_; }
   [[nodiscard]] const DeviceModel<S>& device() const noexcept { return device_; }
@@ -118,6 +129,7 @@ class PassivityController {
     budget_ = S(0);
     known_ = 0;
     sent_.fill({});
+    vibration_.reset();
   }
 
  private:
@@ -224,6 +236,7 @@ class PassivityController {
   std::size_t pose_ = 0, known_ = 0;
   S budget_ = S(0);  // B
   S scale_ = S(1);
+  detail::VibrationLimit<S> vibration_;
 };
 
 }  // namespace palpate

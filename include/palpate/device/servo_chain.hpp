@@ -127,6 +127,10 @@ class ServoChain {
     out.wrench = params_.mapping.to_device(wrench, X);
     if (!params_.has_torque) out.wrench.torque.setZero();
     const S demanded = out.wrench.force.norm() + out.wrench.torque.norm();
+    if constexpr (Passivity::active) {
+      if (passivity_.softened() < S(1))
+        out.wrench = {passivity_.softened() * out.wrench.force, passivity_.softened() * out.wrench.torque};
+    }
 
     if constexpr (Limits::active) {
       if (has(status, Status::invalid_pose) || has(status, Status::non_finite_result)) limits_.disarm();
