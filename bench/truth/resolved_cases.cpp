@@ -87,16 +87,29 @@ Shapes shapes(const std::string& path) {
   return out;
 }
 
-/// The tool's surface [m]: a fine box around it, each vertex moved to the tool by the exact distance.
-palpate::MeshData<double> mesh_of(const RigidTool& tool) {
+/// Around the tool, in its frame [mm].
+Eigen::AlignedBox3d bounds(const RigidTool& tool) {
   V half = tool.size;
   if (tool.kind == RigidTool::ball) half = V::Constant(tool.size.x());
   if (tool.kind == RigidTool::capsule)
     half = V(tool.size.x() + tool.size.y() / 2, tool.size.x(), tool.size.x());
   if (tool.kind == RigidTool::box) half = tool.size / 2;
   if (tool.kind == RigidTool::cylinder) half = V(tool.size.x(), tool.size.y() / 2, tool.size.x());
-  if (tool.kind == RigidTool::mesh) throw std::runtime_error("mesh tools are not covered");
-  palpate::MeshData<double> mesh = palpate::Box<double>({.half = half}).mesh(8000);
+  Eigen::AlignedBox3d around(-half, half);
+  if (tool.kind == RigidTool::mesh) {
+    around.setEmpty();
+    for (const V& p : tool.triangles.vertices) around.extend(p);
+    around = {around.min() - V::Constant(tool.rounding), around.max() + V::Constant(tool.rounding)};
+  }
+  return around;
+}
+
+/// The tool's surface [m]: a fine box around it, each vertex moved to the tool by the exact distance. A mesh
+/// with hollows is covered where they can be seen from the box.
+palpate::MeshData<double> mesh_of(const RigidTool& tool) {
+  const Eigen::AlignedBox3d around = bounds(tool);
+  palpate::MeshData<double> mesh =
+      palpate::Box<double>({.half = around.sizes() / 2, .centre = around.center()}).mesh(8000);
   for (V& p : mesh.vertices) {
     const Distance d = tool.distance(p);
     p = mm * (p - d.value * d.gradient);
@@ -166,9 +179,10 @@ palpate::MeshData<double> mesh_of(const Body& body) {
 }
 
 palpate::ToolPoints<double> points_of(const RigidTool& tool) {
-  const bool is_round = tool.kind == RigidTool::ball || tool.kind == RigidTool::ellipsoid;
+  const bool is_round = tool.kind == RigidTool::ball || tool.kind == RigidTool::ellipsoid,
+             is_long = tool.kind == RigidTool::box || tool.kind == RigidTool::mesh;
   const double spacing =
-      mm * (is_round ? 0.12 : 0.2) * (tool.kind == RigidTool::box ? tool.size.minCoeff() : tool.size.x());
+      mm * (is_round ? 0.12 : 0.2) * (is_long ? bounds(tool).sizes().minCoeff() : tool.size.x());
   return {palpate::contact_samples(palpate::TriangleMesh<double>(mesh_of(tool)), spacing),
           {.contact_area = spacing * spacing}};
 }

@@ -71,7 +71,9 @@ TEST_CASE("vibration limit: a new contact begins anew after 0.2 s in free air, a
     const Wrench<double> push{V(0, 4, 0), V::Zero()}, more{V(0, 5, 0), V::Zero()};
     for (int i = 0; i < 100; ++i) {
       const double step = i / 10 % 2 == 0 ? 2e-5 : -2e-5;
+      const double before = limit.scale();
       limit.observe(i / 10 % 2 == 0 ? push : more, -4 * step, V::Zero(), true, dt);
+      CHECK(before - limit.scale() <= dt / 0.02 + 1e-12);  // no jump of the force
     }
     REQUIRE(limit.scale() < 1);
     for (int i = 0; i < int(free / dt); ++i) limit.observe({}, 0, V::Zero(), false, dt);
