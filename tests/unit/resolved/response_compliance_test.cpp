@@ -106,18 +106,18 @@ TEST_CASE("points in the prisms over a load mesh are where LoadMesh::locate() ha
   using W = detail::LoadPrisms::V;
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> uniform(-1, 1);
-  int elsewhere = 0, not_found = 0;
+  int elsewhere = 0;
   for (int k = 0; k < 500; ++k) {
-    const V direction = V(uniform(random), uniform(random), uniform(random)).normalized(),
+    // One by one, for the same points with any compiler: for 2 of 500 others two steps of Newton's method do
+    // not do, and locate() is asked.
+    const double dz = uniform(random), dy = uniform(random), dx = uniform(random);
+    const V direction = V(dx, dy, dz).normalized(),
             x = (1 + 0.1 * uniform(random)) * direction.cwiseProduct(V(0.06, 0.04, 0.04));
     const LoadPosition exact = mesh.locate(x, mesh.locate(x).triangle);
     std::array<std::uint32_t, W::size()> triangle{};  // the first one may, by chance, be the right one
     triangle[0] = exact.triangle;
     const auto at = prisms.locate(detail::each((x - prisms.centre()).cast<float>()), triangle);
-    if (at.found[0] == 0) {  // two steps of Newton's method do not do; locate() is asked then
-      ++not_found;
-      continue;
-    }
+    REQUIRE(at.found[0] > 0);
     CHECK_ABSOLUTE(at.q[0], exact.weight.y(), 1e-5);  // the least weight that counts as inside
     CHECK_ABSOLUTE(at.r[0], exact.weight.z(), 1e-5);
     double size = 0;
@@ -128,6 +128,5 @@ TEST_CASE("points in the prisms over a load mesh are where LoadMesh::locate() ha
     CHECK_ABSOLUTE(at.far2[0], far2, 1e-4 * (far2 + 1e-3));
     if (exact.triangle != 0) elsewhere += at.found[1] == 0;
   }
-  CHECK(not_found <= 5);
   CHECK(elsewhere > 480);  // all but those beside the first triangle
 }
