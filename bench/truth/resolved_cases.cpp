@@ -6,8 +6,8 @@
 ///     resolved_cases CASE_DIR...      e.g. bench/truth/data/contact/*
 ///
 /// CASE_DIR holds case.txt and load.csv. Several tools are solved in turn, each under the loads of the others.
-/// Prints each step: loads of all tools, displacements at 300 places; and the root mean square of the force's
-/// error as a vector.
+/// Prints each step: each tool's load, displacements at 300 places; and the root mean square of the force's
+/// error as a vector, of all tools over all tools' forces.
 
 #include "truth/case_file.hpp"
 
@@ -49,20 +49,16 @@ void each_row(const std::string& path, const Row& row) {
   }
 }
 
-/// Of all tools together, by step; torques about the first tool's origin.
-std::vector<Load> loads(const std::string& path, const ContactCase& c) {
-  std::vector<Load> out;
+/// By step and tool; torques about the tool's origin.
+std::vector<std::vector<Load>> loads(const std::string& path) {
+  std::vector<std::vector<Load>> out;
   each_row(path, [&](std::istream& words) {
     std::size_t step = 0, tool = 0;
     Load l;
     words >> step >> tool >> l.force.x() >> l.force.y() >> l.force.z() >> l.torque.x() >> l.torque.y() >>
         l.torque.z() >> l.area;
     if (step > out.size()) out.emplace_back();
-    const auto& poses = c.poses.at(step);
-    l.torque += (poses.at(tool - 1).origin - poses.front().origin).cross(l.force);
-    out[step - 1].force += l.force;
-    out[step - 1].torque += l.torque;
-    out[step - 1].area += l.area;
+    out.back().push_back(l);
   });
   return out;
 }
@@ -190,7 +186,7 @@ palpate::ToolPoints<double> points_of(const RigidTool& tool) {
 template <class Object, class Friction>
 void judge(const std::string& name, const ContactCase& c, const Object& object,
            const std::shared_ptr<const palpate::ResponseField>& field, const Friction& friction,
-           const std::vector<Load>& truth, const Shapes& shapes) {
+           const std::vector<std::vector<Load>>& truth, const Shapes& shapes) {
   using Elastic = palpate::ElasticContact<double, palpate::ResponseCompliance>;
   using Solver = palpate::ContactSolver<Object, Elastic, Friction, palpate::ContactPoints<512, 512>>;
   using Loads = palpate::FixedVector<palpate::SurfaceLoad<double>, 512>;
@@ -216,35 +212,32 @@ void judge(const std::string& name, const ContactCase& c, const Object& object,
   double sum = 0;
   std::size_t steps = 0;
   for (std::size_t k = 1; k < c.poses.size() && k <= truth.size(); ++k) {
-    V force = V::Zero(), torque = V::Zero();
-    double area = 0;
-    std::size_t points = 0;
+    std::vector<Load> felt(tools.size());
     const int rest = tools.size() > 1 ? 5 : 0;  // rounds in which the tools come to agree
     for (int i = 1; i <= 100 + rest; ++i) {
-      force = torque = V::Zero();
-      area = 0, points = 0;
       for (std::size_t t = 0; t < tools.size(); ++t) {
         const Pose p = between(c.poses[k - 1][t], c.poses[k][t], (std::min)(i, 100) / 100.);
         const Loads beside = loads_without(t);
         tools[t].set_beside(std::span(beside.begin(), beside.size()));
-        const auto felt = tools[t].tick({p.rotation.toRotationMatrix(), mm * p.origin}, 1e-3);
-        force -= felt.wrench.force;
-        torque -=
-            felt.wrench.torque / mm +
-            (p.origin - c.poses[k][0].origin).cross(felt.wrench.force);  // about the first tool's origin
-        if (!tools[t].contacts().empty()) area += tools[t].contacts()[0].area / (mm * mm);
-        points += tools[t].state().points().size();
+        const auto wrench = tools[t].tick({p.rotation.toRotationMatrix(), mm * p.origin}, 1e-3).wrench;
+        felt[t] = {-wrench.force, -wrench.torque / mm,
+                   tools[t].contacts().empty() ? 0 : tools[t].contacts()[0].area / (mm * mm)};
       }
     }
-    const Load& t = truth[k - 1];
-    const double error = (force - t.force).norm() / t.force.norm();
-    sum += error * error;
+    double wrong2 = 0, whole2 = 0;
+    for (std::size_t t = 0; t < tools.size(); ++t) {
+      const Load &at = felt[t], &wanted = truth[k - 1].at(t);
+      const V wrong = at.force - wanted.force;
+      wrong2 += wrong.squaredNorm(), whole2 += wanted.force.squaredNorm();
+      std::printf("%s step %zu tool %zu: F %.3f %.3f %.3f N, reference %.3f %.3f %.3f: %.1f %%; ",
+                  name.c_str(), k, t + 1, at.force.x(), at.force.y(), at.force.z(), wanted.force.x(),
+                  wanted.force.y(), wanted.force.z(), 100 * wrong.norm() / wanted.force.norm());
+      std::printf("T %.1f %.1f %.1f N mm, reference %.1f %.1f %.1f; area %+.0f %%; %zu points\n",
+                  at.torque.x(), at.torque.y(), at.torque.z(), wanted.torque.x(), wanted.torque.y(),
+                  wanted.torque.z(), 100 * (at.area / wanted.area - 1), tools[t].state().points().size());
+    }
+    sum += wrong2 / whole2;
     ++steps;
-    std::printf("%s step %zu: F %.3f %.3f %.3f N, reference %.3f %.3f %.3f: %.1f %%; ", name.c_str(), k,
-                force.x(), force.y(), force.z(), t.force.x(), t.force.y(), t.force.z(), 100 * error);
-    std::printf("T %.1f %.1f %.1f N mm, reference %.1f %.1f %.1f; area %+.0f %%; %zu points\n", torque.x(),
-                torque.y(), torque.z(), t.torque.x(), t.torque.y(), t.torque.z(), 100 * (area / t.area - 1),
-                points);
     const Loads all = loads_without(tools.size());
     (void)shape.write({all.begin(), all.size()}, buffer);
     double off = 0, area_of_all = 0, largest = 0, deepest = 0, there = 0;
@@ -266,8 +259,8 @@ void judge(const std::string& name, const ContactCase& c, const Object& object,
 
 template <class Object>
 void judge(const std::string& name, const ContactCase& c, const Object& object,
-           const std::shared_ptr<const palpate::ResponseField>& field, const std::vector<Load>& truth,
-           const Shapes& shapes) {
+           const std::shared_ptr<const palpate::ResponseField>& field,
+           const std::vector<std::vector<Load>>& truth, const Shapes& shapes) {
   if (c.friction > 0)
     judge(name, c, object, field,
           palpate::CoulombFriction<double>({.mu_static = c.friction, .mu_dynamic = c.friction}), truth,
@@ -278,7 +271,7 @@ void judge(const std::string& name, const ContactCase& c, const Object& object,
 
 void judge(const std::string& folder) {
   const ContactCase c = CaseFile::read(folder + "/case.txt");
-  const std::vector<Load> truth = loads(folder + "/load.csv", c);
+  const std::vector<std::vector<Load>> truth = loads(folder + "/load.csv");
   if (truth.empty()) throw std::runtime_error("no step was reached");
   const Shapes moved = shapes(folder + "/shape.csv");
   const std::string name = folder.substr(folder.find_last_of('/') + 1);

@@ -98,6 +98,17 @@ TEST_CASE("without friction a closed path gives no energy: pressed, rolled over 
   CHECK(std::abs(work) <= 0.006 * spent);
 }
 
+TEST_CASE("more points than the topology holds are said on a response field, too") {
+  ContactSolver<Ellipsoid<double>, Elastic, Frictionless<double>, ContactPoints<8>> solver(
+      {.object = Ellipsoid<double>({.axes = V(0.06, 0.04, 0.04)}),
+       .tool = solver_of(0.002).tool(),
+       .force = Elastic({.compliance = ResponseCompliance(field())})});
+  CHECK_FALSE(has(solver.tick(at(V(0, 0.04 + R - 1e-4, 0))).status, Status::point_overflow));
+  const auto result = solver.tick(at(V(0, 0.04 + R - 2e-3, 0)));
+  CHECK(has(result.status, Status::point_overflow));
+  CHECK(has(result.status, Status::contact));
+}
+
 TEST_CASE("a field that is missing is refused") { CHECK_THROWS_AS(ResponseCompliance(nullptr), SetupError); }
 
 TEST_CASE("points in the prisms over a load mesh are where LoadMesh::locate() has them") {

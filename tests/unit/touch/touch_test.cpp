@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 
 #include <palpate/geometry/ellipsoid.hpp>
+#include <palpate/geometry/sphere.hpp>
 #include <palpate/touch.hpp>
 
 #include <support/check.hpp>
@@ -12,6 +13,7 @@
 #include <doctest/doctest.h>
 
 #include <atomic>
+#include <cmath>
 #include <limits>
 #include <random>
 #include <thread>
@@ -285,6 +287,41 @@ TEST_CASE("touch, two tools on one body: it gives way to both, and is drawn on b
     if (std::abs(x.y() - y) > 0.005 || std::abs(x.z()) > 0.005 || std::abs(x.x()) < 0.999 * half) continue;
     CHECK_ABSOLUTE(std::abs(p[3 * v]), half - d, 1e-4);  // 5 % of the depth: some 40 points on each
   }
+}
+
+// The case `grasp` of bench/truth/data/contact: what each ball pushes the block with, by finite elements, 1 %. A
+// ball alone bends the block away, with 9.6 N where they are 2.5 mm deep; the other one pushes it back, by
+// more than that.
+TEST_CASE("touch, two balls hold a block and lift it: as finite elements have it") {
+  const ElasticBody body(standing_box(V(0.04, 0.05, 0.04), 12),
+                         {.E = 1e6, .nu = 0.49, .fixed = below(1e-6), .vertices = 200});
+  using Finger = Touch<MeshTool, Coulomb>;
+  const auto tool = tool_mesh(Sphere<double>({.radius = 0.01}).mesh(2000), {.spacing = 1.2e-3});
+  const Coulomb friction({.mu_static = 0.4, .mu_dynamic = 0.4});
+  Finger left(body, tool, friction), right(body, tool, friction);
+  const auto hold = [&](double x, double y) {  // half the distance of the balls' middles, their height
+    left.set_beside(right.loads());
+    const V on_left = -left.tick(at(V(-x, y, 0)), 1e-3).wrench.force;
+    right.set_beside(left.loads());
+    const V on_right = -right.tick(at(V(x, y, 0)), 1e-3).wrench.force;
+    return std::pair(on_left, on_right);
+  };
+  const auto move = [&](double x, double y, double to_x, double to_y, const V& wanted) {
+    const test::HeapCount heap;
+    constexpr int ticks = 150;
+    for (int i = 1; i < ticks; ++i)
+      (void)hold(std::lerp(x, to_x, double(i) / ticks), std::lerp(y, to_y, double(i) / ticks));
+    for (int i = 0; i < 6; ++i) (void)hold(to_x, to_y);
+    const auto [on_left, on_right] = hold(to_x, to_y);
+    CHECK(heap.allocations() == 0);
+    MESSAGE(on_left.transpose(), " N, ", on_right.transpose(), " N");
+    CHECK((on_left - wanted).norm() < 0.03 * wanted.norm());
+    CHECK((on_right - V(-wanted.x(), wanted.y(), 0)).norm() < 0.03 * wanted.norm());
+  };
+  move(0.0302, 0.035, 0.029, 0.035, V(5.897, -0.219, 0));
+  move(0.029, 0.035, 0.0275, 0.035, V(24.05, -1.33, 0));
+  move(0.0275, 0.035, 0.0275, 0.0355, V(23.52, 2.44, 0));
+  move(0.0275, 0.0355, 0.0275, 0.037, V(22.40, 9.50, 0));  // slides, at 0.42 of the normal force
 }
 
 TEST_CASE("touch, two threads: every drawn shape is that of one tick, and none comes twice or late") {

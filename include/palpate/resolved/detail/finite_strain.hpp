@@ -39,7 +39,7 @@ class FiniteStrain {
                const auto& given) noexcept {
     V loads{}, pressures{}, sunks{}, rests{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
-      const V qi(q + i), beside = dot(system.directions().load(i), given.load(i));
+      const V qi(q + i), beside = dot(system.directions().load(i), given.beyond(i));
       loads += qi, pressures += qi * qi / V(system.areas() + i);
       sunks += qi * (V(r + i) + V(&system.depth[i]) + beside);
       rests += qi * (dot(system.directions().load(i), w.load(i)) + beside);

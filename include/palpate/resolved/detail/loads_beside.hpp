@@ -5,12 +5,16 @@
 
 #include <palpate/contact/surface_load.hpp>
 #include <palpate/core/aligned_list.hpp>
+#include <palpate/core/pose.hpp>
 #include <palpate/core/scalar.hpp>
+#include <palpate/detection/tool_points.hpp>
+#include <palpate/geometry/concept.hpp>
 #include <palpate/resolved/detail/half_space_kernel.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/resolved/detail/vector_list.hpp>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,6 +22,18 @@
 namespace palpate::detail {
 
 /// Up to `capacity` loads, in the coordinates and units of a tick.
+///
+/// They may move the body farther than the tool is deep in it, as one finger pushes a block to the other. So
+/// points are looked for at X - (v + e), where the surface beneath the tool has gone by v, and a point's
+/// depth is less by m.(u_i - v):
+///
+///     v = mean of u_i - 2 s m        in contact: as where the surface is sunk least; s: deviation of m_i.u_i
+///     v = u at the surface's point nearest to the tool's middle      without
+///     e: keeps mean + e where one goes over into the other; |de| = -0.3 (|dX| + |dv|)
+///
+/// u_i: displacement of point i by others' loads. Means are by depth and area. v only chooses which points
+/// are found: one beside the contact costs time, and hardly changes the direction of pressing. With e no
+/// force jumps, and none changes at rest.
 template <Real S>
 class LoadsBeside {
  public:
@@ -34,7 +50,29 @@ class LoadsBeside {
 
   /// Loads of the caller's, which stay where they are until they are others'.
   void set(std::span<const SurfaceLoad<S>> loads) noexcept { loads_ = loads; }
+  /// After a tick.
+  void drop() noexcept { loads_ = {}; }
   [[nodiscard]] bool has_all() const noexcept { return loads_.size() <= triangle_.size(); }
+
+  void forget() noexcept { v_ = mean_ = next_ = rest_ = Vec3<float>::Zero(), touched_ = false; }
+  /// With the tool at X; it was at `before` in the last tick, and then touched the body or did not.
+  template <ContactSurface Object, class Body, class RegularPart>
+  void begin_tick(const Object& object, const Body& body, const ToolPoints<S>& tool, const Pose<S>& before,
+                  const Pose<S>& X, bool touches, S per_load, RegularPart& regular) noexcept {
+    const auto& all = tool.nodes()[0];
+    const Vec3<S> centre = X * all.centre;
+    const float way = static_cast<float>((centre - before * all.centre).norm()) + (next_ - v_).norm(),
+                left = rest_.norm();
+    rest_ *= left > fading * way ? 1 - fading * way / left : 0.f;
+    v_ = next_;
+    if (loads_.empty()) forget();
+    if (!touches) approach(object, body, centre, all.radius, per_load, regular);
+    touched_ = touches;
+  }
+  /// Where the tool at X is over the undeformed surface.
+  [[nodiscard]] Pose<S> over(const Pose<S>& X) const noexcept {
+    return {X.rotation, X.translation - (v_ + rest_).template cast<S>()};
+  }
 
   /// Takes them into a tick's system: positions relative to `origin`, P = f / per_load.
   template <class Body, class RegularPart>
@@ -61,30 +99,40 @@ class LoadsBeside {
                            P_[i]);
     }
   }
-  /// They move the points, which then need not be pressed as deep, or must be pressed deeper where the
-  /// surface bulges. Of a bulge that is higher than the tool is deep a part counts: touching points are found
-  /// beneath the undeformed surface alone, and a tool that lifts off would lose its force as the root of its
-  /// depth.
+  /// They move the points, whose depths this makes less.
   template <class RegularPart>
   void move_points(PointSystem& system, RegularPart& regular) noexcept {
-    if (size_ == 0) return;
+    if (loads_.empty()) return;
     if constexpr (RegularPart::active) regular.gather_beside();
-    float bulge = 0;
+    float total = 0, sum = 0, sum2 = 0;
+    Vec3<float> sum_u = Vec3<float>::Zero(), sum_m = Vec3<float>::Zero();
     for (std::size_t i = 0; i < system.size(); ++i) {
-      Vec3<float> u = displacement_at(system.foot(i), system.direction(i));
+      const Vec3<float> m = system.direction(i);
+      Vec3<float> u = displacement_at(system.foot(i), m);
       if constexpr (RegularPart::active) u += regular.beside(i);
       given_.set(i, u);
-      bulge = (std::max)(bulge, -system.direction(i).dot(u));
+      const float along = m.dot(u - v_), depth = touched_ ? system.depth[i] - along : system.depth[i],
+                  weight = (std::max)(depth, 0.f) * system.area(i);
+      total += weight, sum += weight * along, sum2 += weight * along * along;
+      sum_u += weight * u, sum_m += weight * m;
     }
-    const float share = bulge > system.deepest() ? system.deepest() / bulge : 1.f;
-    for (std::size_t i = 0; i < system.size(); ++i) {
-      const float sunk = system.direction(i).dot(given_[i]);
-      system.depth[i] -= sunk < 0 ? share * sunk : sunk;
+    if (total > 0) {
+      const float variance = sum2 / total - sum / total * (sum / total);
+      const Vec3<float> mean = sum_u / total;
+      if (!touched_) rest_ += v_ - mean, v_ = mean;
+      mean_ = mean;
+      next_ = mean - reach * std::sqrt((std::max)(variance, 0.f)) * sum_m.stableNormalized();
     }
+    for (std::size_t i = 0; i < system.size(); ++i)
+      system.depth[i] -= system.direction(i).dot(given_[i] - v_);
   }
   /// Displacements of points i .. on of the tick by them [m].
   [[nodiscard]] PALPATE_INLINE SimdVec3<V> load(std::size_t i) const noexcept {
-    return size_ > 0 ? given_.load(i) : SimdVec3<V>{};
+    return loads_.empty() ? SimdVec3<V>{} : given_.load(i);
+  }
+  /// Of these, what the depths are less by: u_i - v.
+  [[nodiscard]] PALPATE_INLINE SimdVec3<V> beyond(std::size_t i) const noexcept {
+    return loads_.empty() ? SimdVec3<V>{} : given_.load(i) - each<V>(v_);
   }
 
   /// The half-space's displacement at x by all of them; m: the direction of pressing there [m].
@@ -95,8 +143,41 @@ class LoadsBeside {
                    sum);
     return sum_of(sum);
   }
+  [[nodiscard]] const Vec3<float>& v() const noexcept { return v_; }
+  /// Of a displacement a across m, what the next tick's v does not contain.
+  [[nodiscard]] Vec3<float> own(const Vec3<float>& a, const Vec3<float>& m) const noexcept {
+    return a - next_ + m.dot(next_) * m;
+  }
 
  private:
+  // Without contact, all of the tool within `radius` of its middle.
+  template <ContactSurface Object, class Body, class RegularPart>
+  void approach(const Object& object, const Body& body, const Vec3<S>& centre, S radius, S per_load,
+                RegularPart& regular) noexcept {
+    Vec3<float> u = Vec3<float>::Zero();
+    if (!loads_.empty() && !object.separated(centre, 2 * radius)) {
+      const Vec3<S> nearest = object.closest(centre).position;
+      if constexpr (RegularPart::active) {
+        regular.clear();
+        regular.place_point(body, nearest.template cast<double>(), triangle_of_nearest_);
+      }
+      place(body, nearest, per_load, regular);
+      for (std::size_t i = 0; i < size_; i += V::size())
+        u += sum_of(pushed(b_, point_pair(SimdVec3<V>{} - x_.load(i), m_.load(i), m_.load(i), V(&area_[i])),
+                           P_.load(i), {}));
+      if constexpr (RegularPart::active) {
+        regular.build();
+        regular.gather_beside();
+        u += regular.beside(0);
+      }
+    }
+    if (touched_) rest_ += mean_ - u;
+    v_ = mean_ = next_ = u;
+  }
+
+  static constexpr float fading = 0.3f;  // chosen: a force then changes by a third more along a path
+  static constexpr float reach = 2;      // deviations: a ball's contact ends after 1.7 where u_i is linear
+
   float b_;  // 1 - 2 nu
   std::span<const SurfaceLoad<S>> loads_;
   VectorList x_, m_, P_;
@@ -104,13 +185,23 @@ class LoadsBeside {
   std::vector<std::uint32_t> triangle_;  // of the load mesh, where a load was last
   VectorList given_;
   std::size_t size_ = 0;
+  Vec3<float> v_ = Vec3<float>::Zero(), mean_ = v_, next_ = v_, rest_ = v_;  // rest_: e
+  std::uint32_t triangle_of_nearest_ = ~0u;
+  bool touched_ = false;  // in the last tick
 };
 
 /// A tool that is alone on its body.
 struct NoLoadsBeside {
   static constexpr bool active = false;
   NoLoadsBeside(std::size_t, std::size_t, float) {}
+  static void drop() noexcept {}
+  static void forget() noexcept {}
+  static void begin_tick(const auto&...) noexcept {}
+  [[nodiscard]] static bool has_all() noexcept { return true; }
+  [[nodiscard]] static const auto& over(const auto& X) noexcept { return X; }
+  [[nodiscard]] static const auto& own(const auto& a, const auto& /*m*/) noexcept { return a; }
   [[nodiscard]] PALPATE_INLINE static SimdVec3<VectorList::V> load(std::size_t) noexcept { return {}; }
+  [[nodiscard]] PALPATE_INLINE static SimdVec3<VectorList::V> beyond(std::size_t) noexcept { return {}; }
 };
 
 }  // namespace palpate::detail

@@ -73,6 +73,12 @@ class RegularPart {
       }
     }
   }
+  /// One point, at x in object coordinates; `triangle` likewise.
+  template <class Body>
+  void place_point(const Body& body, const Vec3<double>& x, std::uint32_t& triangle) noexcept {
+    place(body.field(), x, triangle, weights_[0], true);
+    size_ = 1;
+  }
   /// A load P of another tool, at x in object coordinates; `triangle` likewise.
   template <class Body>
   void add_beside(const Body& body, const Vec3<double>& x, std::uint32_t& triangle,

@@ -60,6 +60,7 @@ class ResolvedState {
     contacts_.clear();
     tick_ += 2;  // no point has touched in the tick before
     forget();
+    beside_.forget();
   }
   [[nodiscard]] bool has_contact() const noexcept { return !contacts_.empty(); }
   [[nodiscard]] std::span<const PointContact<S>> contacts() const noexcept {
@@ -96,12 +97,17 @@ class ResolvedState {
     return contact_area(system_, pressure_, unloaded_);
   }
 
-  void begin_tick() noexcept {
+  void begin_tick(const ContactSurface auto& object, const Force& force, const ToolPoints<S>& tool,
+                  const Pose<S>& X) noexcept {
+    per_load_ = static_cast<S>(4 * std::numbers::pi * force.shear_modulus());
+    beside_.begin_tick(object, force.compliance(), tool, pose_, X, has_contact(), per_load_, regular_);
     ++tick_;
     touching_.clear();
     has_room_ = true;
     system_.begin_tick();
   }
+  /// Where the tool at X is over the undeformed surface, which others' loads move.
+  [[nodiscard]] Pose<S> over(const Pose<S>& X) const noexcept { return beside_.over(X); }
   /// Where friction has carried the surface.
   [[nodiscard]] const auto& carried() const noexcept { return carried_; }
   /// Tool points from `begin` on, a leaf, over x in object coordinates (carried().before()), are in the body;
@@ -133,21 +139,20 @@ class ResolvedState {
     const bool first = contacts_.empty();
     contacts_.clear();
     residual_ = {};
-    per_load_ = static_cast<S>(4 * std::numbers::pi * force.shear_modulus());
     const Pose<S> before = std::exchange(pose_, X);
     if (touching_.empty()) {
       forget();
       return true;
     }
-    float deepest = 0, size2 = 0;
-    for (const Touching& c : touching_) deepest = (std::max)(deepest, c.depth), size2 += c.depth * c.depth;
+    float size2 = 0;
+    for (const Touching& c : touching_) size2 += c.depth * c.depth;
     const float tolerance = static_cast<float>(force.params().tolerance) * std::sqrt(size2);
     if constexpr (has_friction) move_anchors(before, X, tool);
     // First those that carry load or came near to it.
     inside_.clear();
     for (std::uint32_t c = 0; c < touching_.size(); ++c) {
       const Point& p = points_[touching_[c].point];
-      if (p.loaded || p.sunk - touching_[c].depth < near * deepest) inside_.push_back(c);
+      if (p.loaded || p.sunk - touching_[c].depth < near * system_.deepest()) inside_.push_back(c);
     }
     for (int round = 0;; ++round) {
       build(force, tool);
@@ -161,12 +166,9 @@ class ResolvedState {
       if (round == most_rounds || !take_in(force, tool, tolerance, again)) break;
     }
     finish(tool);
-    bool all = has_room_;
-    if constexpr (RegularPart::active) all = regular_.has_all();
-    if constexpr (Beside::active) {
-      all = all && beside_.has_all();
-      beside_.set({});
-    }
+    bool all = has_room_ && beside_.has_all();
+    if constexpr (RegularPart::active) all = all && regular_.has_all();
+    beside_.drop();
     return all;
   }
 
@@ -174,10 +176,8 @@ class ResolvedState {
   using RegularPart = typename RegularPartOf<Compliance>::type;
   using Strain = std::conditional_t<RegularPart::active, FiniteStrain, LinearStrain>;
   using Beside = std::conditional_t<(max_beside > 0), LoadsBeside<S>, NoLoadsBeside>;
-  /// Points whose gap was less than this share of the depth are solved for at once.
-  static constexpr float near = 0.05f;
-  /// How often points may come in within a tick.
-  static constexpr int most_rounds = 3;
+  static constexpr float near = 0.05f;   // of the depth; with less gap points are solved for at once
+  static constexpr int most_rounds = 3;  // in which points may come in within a tick
 
   using V = VectorList::V;
   using Point = PointMemory;
@@ -189,7 +189,7 @@ class ResolvedState {
     strength_ = {};
     if constexpr (has_friction) result_.step = 0, carried_.clear(origin_);
     if constexpr (Strain::active) strain_.forget();
-    if constexpr (Beside::active) beside_.set({});
+    beside_.drop();
   }
   [[nodiscard]] Point& point(std::size_t i) noexcept { return points_[touching_[inside_[i]].point]; }
   void build(const Force& force, const ToolPoints<S>& tool) noexcept {
@@ -281,7 +281,7 @@ class ResolvedState {
       float gap = system_.normal_displacement_at(pressure_.q.data(), foot, m,
                                                  static_cast<float>(tool.area(at.point))) -
                   strain_.factor() * depth;
-      if constexpr (Beside::active) gap += m.dot(beside_.displacement_at(foot, m));
+      if constexpr (Beside::active) gap += m.dot(beside_.displacement_at(foot, m) - beside_.v());
       if constexpr (RegularPart::active)
         gap += regular_.normal_at(force.compliance(),
                                   (origin_ + foot.template cast<S>()).template cast<double>(), p.triangle, m);
@@ -300,9 +300,9 @@ class ResolvedState {
 
   void move_anchors(const Pose<S>& before, const Pose<S>& now, const ToolPoints<S>& tool) noexcept {
     for (const Touching& c : touching_) {
-      Point& p = points_[c.point];
       const Vec3<S>& x = tool.point(c.point);
-      if (p.loaded) p.anchor += Vec3<S>(now * x - before * x).template cast<float>();
+      if (Point& p = points_[c.point]; p.loaded)
+        p.anchor += Vec3<S>(now * x - before * x).template cast<float>();
     }
   }
   /// mu of every point: the law's limit of the whole contact over its normal force, of loads q.
@@ -357,8 +357,8 @@ class ResolvedState {
       if constexpr (has_friction) {
         p.sticks = last_.sticks[i] > 0;
         p.anchor = anchor_[i];
-        carried_.add(at.point / static_cast<std::uint32_t>(batch_size), at.x, q, p.anchor,
-                     static_cast<float>(tool.area(at.point)));
+        carried_.add(at.point / static_cast<std::uint32_t>(batch_size), at.x, q,
+                     beside_.own(p.anchor, system_.direction(i)), static_cast<float>(tool.area(at.point)));
       }
       contacts_.push_back({at.point, p.sticks, pose_ * tool.point(at.point), -at.m.template cast<S>(),
                            -per_load_ * felt_[i].template cast<S>(),

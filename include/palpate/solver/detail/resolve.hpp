@@ -31,7 +31,8 @@ class ResolvedCollector {
                const Pose<S>& X, const Acting&, State& state, FixedVector<ContactState<S>, 1>& contacts,
                TickResult<S>& result) const noexcept {
     result.status = Status::ok;
-    state.begin_tick();
+    state.begin_tick(object, force, tool, X);
+    const Pose<S> over = state.over(X);
     const Mat3<float> rotation = X.rotation.template cast<float>();
     S deepest = S(0);
     const auto touch = [&](std::uint32_t begin, const PointBatch<S>& x,
@@ -40,9 +41,9 @@ class ResolvedCollector {
     };
     if constexpr (has_friction) {
       const auto before = [&](const PointBatch<S>& x) noexcept { return state.carried().before(x); };
-      for_each_touching_leaf(tool, X, object, touch, before, state.carried().most());
+      for_each_touching_leaf(tool, over, object, touch, before, state.carried().most());
     } else {
-      for_each_touching_leaf(tool, X, object, touch);
+      for_each_touching_leaf(tool, over, object, touch);
     }
     const bool was_touching = state.has_contact();
     if (!state.solve(force, friction, tool, X)) result.status |= Status::point_overflow;
