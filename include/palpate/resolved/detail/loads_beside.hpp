@@ -28,7 +28,7 @@ namespace palpate::detail {
 /// depth is less by m.(u_i - v):
 ///
 ///     v = mean of u_i - 2 s m        in contact: as where the surface is sunk least; s: deviation of m_i.u_i
-///     v = u at the surface's point nearest to the tool's middle      without
+///     v = u where the tool is nearest to the surface                  without
 ///     e: keeps mean + e where one goes over into the other; |de| = -0.3 (|dX| + |dv|)
 ///
 /// u_i: displacement of point i by others' loads. Means are by depth and area. v only chooses which points
@@ -66,7 +66,7 @@ class LoadsBeside {
     rest_ *= left > fading * way ? 1 - fading * way / left : 0.f;
     v_ = next_;
     if (loads_.empty()) forget();
-    if (!touches) approach(object, body, centre, all.radius, per_load, regular);
+    if (!touches) approach(object, body, tool, X, per_load, regular);
     touched_ = touches;
   }
   /// Where the tool at X is over the undeformed surface.
@@ -150,13 +150,30 @@ class LoadsBeside {
   }
 
  private:
-  // Without contact, all of the tool within `radius` of its middle.
+  // On the surface: down the tool's tree, of two balls always into the one whose middle is nearer.
+  template <ContactSurface Object>
+  [[nodiscard]] static Vec3<S> nearest_place(const Object& object, const ToolPoints<S>& tool,
+                                             const Pose<S>& X) noexcept {
+    const auto nodes = tool.nodes();
+    SurfacePoint<S> at = object.closest(X * nodes[0].centre);
+    for (std::size_t n = 0; nodes[n].skip > n + 1;) {
+      const std::size_t left = n + 1, right = nodes[left].skip;
+      const SurfacePoint<S> at_left = object.closest(X * nodes[left].centre),
+                            at_right = object.closest(X * nodes[right].centre);
+      const bool is_left = at_left.distance < at_right.distance;
+      n = is_left ? left : right;
+      at = is_left ? at_left : at_right;
+    }
+    return at.position;
+  }
+  // Without contact.
   template <ContactSurface Object, class Body, class RegularPart>
-  void approach(const Object& object, const Body& body, const Vec3<S>& centre, S radius, S per_load,
-                RegularPart& regular) noexcept {
+  void approach(const Object& object, const Body& body, const ToolPoints<S>& tool, const Pose<S>& X,
+                S per_load, RegularPart& regular) noexcept {
     Vec3<float> u = Vec3<float>::Zero();
-    if (!loads_.empty() && !object.separated(centre, 2 * radius)) {
-      const Vec3<S> nearest = object.closest(centre).position;
+    const auto& all = tool.nodes()[0];
+    if (!loads_.empty() && !object.separated(X * all.centre, 2 * all.radius)) {
+      const Vec3<S> nearest = nearest_place(object, tool, X);
       if constexpr (RegularPart::active) {
         regular.clear();
         regular.place_point(body, nearest.template cast<double>(), triangle_of_nearest_);
