@@ -13,8 +13,8 @@
 /// (2e-4 of the depths' norm), A the area of the loaded cells, K the stiffness of a flat rectangle 10:1 of that
 /// area (1.32 of a disc's; no rigid tool with so much in contact is stiffer but a more slender one, a sideways
 /// push is softer, and whole cells are more than the contact), L the farthest point from the centre of mass.
-/// With friction 1 + mu times that, for its limit follows the pressure. It is checked at three step lengths: where the step is halved the bound
-/// is, and a jump would stay.
+/// With friction 1 + mu times that, for its limit follows the pressure. It is checked at three step lengths:
+/// where the step is halved the bound is, and a jump would stay.
 ///
 /// *Energy.* Without friction a closed path of 1,000 ticks and more gives no work: less than 0.5 % of what goes
 /// to and fro on a half-space (points come in up to eight ticks late: with 500 ticks 1 %). On a body with a

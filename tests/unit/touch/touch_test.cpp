@@ -289,8 +289,8 @@ TEST_CASE("touch, two tools on one body: it gives way to both, and is drawn on b
   }
 }
 
-// The case `grasp` of bench/truth/data/contact: what each ball pushes the block with, by finite elements, 1 %. A
-// ball alone bends the block away, with 9.6 N where they are 2.5 mm deep; the other one pushes it back, by
+// The case `grasp` of bench/truth/data/contact: what each ball pushes the block with, by finite elements, 1 %.
+// A ball alone bends the block away, with 9.6 N where they are 2.5 mm deep; the other one pushes it back, by
 // more than that.
 TEST_CASE("touch, two balls hold a block and lift it: as finite elements have it") {
   const ElasticBody body(standing_box(V(0.04, 0.05, 0.04), 12),

@@ -152,8 +152,8 @@ class LoadsBeside {
  private:
   // On the surface: down the tool's tree, of two balls always into the one whose middle is nearer.
   template <ContactSurface Object>
-  [[nodiscard]] static Vec3<S> nearest_place(const Object& object, const ToolPoints<S>& tool,
-                                             const Pose<S>& X) noexcept {
+  [[nodiscard]] static SurfacePoint<S> nearest_place(const Object& object, const ToolPoints<S>& tool,
+                                                     const Pose<S>& X) noexcept {
     const auto nodes = tool.nodes();
     SurfacePoint<S> at = object.closest(X * nodes[0].centre);
     for (std::size_t n = 0; nodes[n].skip > n + 1;) {
@@ -164,7 +164,7 @@ class LoadsBeside {
       n = is_left ? left : right;
       at = is_left ? at_left : at_right;
     }
-    return at.position;
+    return at;
   }
   // Without contact.
   template <ContactSurface Object, class Body, class RegularPart>
@@ -173,15 +173,13 @@ class LoadsBeside {
     Vec3<float> u = Vec3<float>::Zero();
     const auto& all = tool.nodes()[0];
     if (!loads_.empty() && !object.separated(X * all.centre, 2 * all.radius)) {
-      const Vec3<S> nearest = nearest_place(object, tool, X);
+      const SurfacePoint<S> nearest = nearest_place(object, tool, X);
       if constexpr (RegularPart::active) {
         regular.clear();
-        regular.place_point(body, nearest.template cast<double>(), triangle_of_nearest_);
+        regular.place_point(body, nearest.position.template cast<double>(), triangle_of_nearest_);
       }
-      place(body, nearest, per_load, regular);
-      for (std::size_t i = 0; i < size_; i += V::size())
-        u += sum_of(pushed(b_, point_pair(SimdVec3<V>{} - x_.load(i), m_.load(i), m_.load(i), V(&area_[i])),
-                           P_.load(i), {}));
+      place(body, nearest.position, per_load, regular);
+      u = displacement_at(Vec3<float>::Zero(), -nearest.normal.template cast<float>());
       if constexpr (RegularPart::active) {
         regular.build();
         regular.gather_beside();
