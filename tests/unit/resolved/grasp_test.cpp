@@ -144,5 +144,5 @@ TEST_CASE("fingers drag a rubber block, fixed below, up to 2 mu N within 3 %") {
   double force = 0;
   for (int i = 1; i <= 100; ++i) force = grasp.on_block(d, lowered(2e-5 * i)).force.y();
   CHECK(grasp.slides());
-  CHECK_RELATIVE(force, 2 * mu * grasp.normal_force(), 0.03);  // measured: 0.01 %
+  CHECK_RELATIVE(force, 2 * mu * grasp.normal_force(), 0.03);  // measured: 0.1 %
 }

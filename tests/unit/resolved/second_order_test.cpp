@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: MIT
-// What a resolved contact has beyond small displacements: the surface that friction carries along, friction on
-// the tool's slanted surface, finite strain.
+// What a resolved contact has beyond small displacements: the surface that friction carries along, the limit
+// of friction at finite strain, finite strain.
 #include <palpate/geometry/box.hpp>
 #include <palpate/geometry/sphere.hpp>
 #include <palpate/law/friction/coulomb.hpp>
 #include <palpate/resolved/contact_samples.hpp>
 #include <palpate/resolved/detail/finite_strain.hpp>
+#include <palpate/resolved/response_compliance.hpp>
 #include <palpate/solver/contact_solver.hpp>
 
 #include <doctest/doctest.h>
 
 #include <support/check.hpp>
 #include <support/on_half_space.hpp>
+#include <support/response_fields.hpp>
+
+#include <memory>
+#include <numbers>
 
 using namespace palpate;
 using namespace palpate::test;
@@ -56,22 +61,71 @@ TEST_CASE("a contact that sticks takes its surface along: aside of a convex body
   CHECK_ABSOLUTE(before.x(), 0, 0.01 * pressed);
 }
 
-TEST_CASE("where a ball slides each point has mu times the pressure on the ball's slanted surface") {
-  constexpr double mu = 0.3, deep = 0.003;
-  auto solver = ball_on(mu);
-  for (int i = 0; i <= 100; ++i) (void)solver.tick(at(0, R - deep * i / 100));
-  double x = 0;
-  for (int i = 1; i <= 300; ++i) (void)solver.tick(at(x = 2e-5 * i, R - deep));
-  REQUIRE(solver.contacts()[0].mode == ContactMode::sliding);
-  double steepest = 1;
-  for (const auto& point : solver.state().points()) {
-    const double q = point.force.dot(point.normal), t = (point.force - q * point.normal).norm(),
-                 cosine = (V(x, R - deep, 0) - point.position).normalized().dot(point.normal);
-    steepest = (std::min)(steepest, cosine);
-    // Points that have just come in have no tractions yet; normals are a cell's mean.
-    if (t > 0) CHECK_RELATIVE(t, mu * q / cosine, 0.005);
+TEST_CASE(
+    "where a ball slides on rubber each point has mu times pressure, area of the ball and way along it") {
+  constexpr double mu = 0.3, deep = 0.003, side = 0.1, E = 1e6;
+  const SurfaceSamples<double> points =
+      contact_samples(TriangleMesh<double>(Sphere<double>({.radius = R}).mesh(2000)), 0.0012);
+  for (const double nu : {0.3, 0.49}) {
+    CAPTURE(nu);
+    using Elastic = ElasticContact<double, ResponseCompliance>;
+    const auto field = std::make_shared<const ResponseField>(block_field(V(side, side, side), E, nu, 80));
+    ContactSolver<Box<double>, Elastic, CoulombFriction<double>, ContactPoints<256>> solver(
+        {.object = Box<double>({.half = V::Constant(side / 2), .centre = V(0, side / 2, 0)}),
+         .tool = ToolPoints<double>(points, {.contact_area = 1e-4}),
+         .force = Elastic({.compliance = ResponseCompliance(field)}),
+         .friction = CoulombFriction<double>({.mu_static = mu, .mu_dynamic = mu})});
+    const double height = side + R - deep;
+    for (int i = 0; i <= 100; ++i) (void)solver.tick(at(0, height + deep * (100 - i) / 100), 1e-3);
+    double x = 0;
+    for (int i = 1; i <= 300; ++i) (void)solver.tick(at(x = 3e-5 * i, height), 1e-3);
+    REQUIRE(solver.contacts()[0].mode == ContactMode::sliding);
+    // Loads on the body, in the order of points; what these feel has the gradients of docs/resolved.md, too.
+    FixedVector<SurfaceLoad<double>, 256> loads;
+    solver.state().loads(loads);
+    const auto felt = solver.state().points();
+    REQUIRE(loads.size() == felt.size());
+    double steepest = 1;
+    for (std::size_t i = 0; i < felt.size(); ++i) {
+      const auto& point = felt[i];
+      const double q = loads[i].force.dot(loads[i].direction),
+                   t = (loads[i].force - q * loads[i].direction).norm(),
+                   cosine = (V(x, height, 0) - point.position).normalized().dot(point.normal);
+      steepest = (std::min)(steepest, cosine);
+      // sqrt(1 + g^2) of area, sqrt(1 + g^2/2) of way, g: slope; the surface is pressed together by
+      // (1 - 2 nu) p/(4 mu), E = 2 (1 + nu) mu.
+      const double area = 1 / cosine, way = std::sqrt((1 + area * area) / 2),
+                   strain = -(1 - 2 * nu) * point.pressure * (1 + nu) / (2 * E);
+      // Points that have just come in have no tractions yet; normals are a cell's mean, pressures the last
+      // tick's.
+      if (t > 0) CHECK_RELATIVE(t, mu * q * area * way * (1 + strain), 0.01);
+    }
+    CHECK(steepest < 0.95);
   }
-  CHECK(steepest < 0.95);
+}
+
+TEST_CASE("the limit of tractions grows with the slope up to a rim's, and halves at most under pressure") {
+  using Simd = detail::VectorList::V;
+  constexpr double nu = 0.3;
+  detail::PointSystem system(8, static_cast<float>(1 - 2 * nu), true);
+  system.begin_tick();
+  system.clear();
+  system.touch(1e-3f, 1e-9f, Vec3<float>::Zero(), -1e-9f * Vec3<float>::UnitY());
+  system.add(Vec3<float>::Zero(), -Vec3<float>::UnitY(), 1e-3f, 1e-6f);
+  system.build();
+  const detail::FiniteStrain strain(nu);
+  const auto limit = [&](float cosine, float q) {
+    const Vec3<float> outward(std::sqrt(1 - cosine * cosine), -cosine, 0);
+    return strain.limit_per_mu(system, 0, detail::each<Simd>(outward), Simd(q))[0];
+  };
+  CHECK(limit(1, 0) == 1);
+  CHECK_RELATIVE(limit(0.9f, 0), std::sqrt((1 + 1 / 0.81) / 2) / 0.9, 1e-6);
+  CHECK(limit(0.7f, 0) == limit(0.8f, 0));
+  CHECK(limit(-1, 0) == limit(0.8f, 0));
+  CHECK_RELATIVE(limit(0.9f, 1e-7f) / limit(0.9f, 0), 1 - (1 - 2 * nu) * std::numbers::pi * 0.1, 1e-6);
+  CHECK(limit(1, 1) == 0.5f);
+  CHECK(detail::LinearStrain(nu).limit_per_mu(system, 0, detail::each<Simd>(Vec3<float>::UnitX()),
+                                              Simd(1))[0] == 1);
 }
 
 TEST_CASE("a ball that slides round in circles hardly needs an iteration: the last tick's change goes on") {

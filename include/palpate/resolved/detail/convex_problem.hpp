@@ -6,7 +6,7 @@
 ///     q >= 0,  m.u - d >= 0,  one of them 0;  u = A P, q = m.P, t = P - q m           Signorini
 ///     |t| <= mu s q;  sticks: u_t = a;  slips: t = mu s q along a - u_t                 Coulomb
 ///
-/// s: pressure on the tool over its part along m. Without friction by conjugate gradients on the loaded
+/// s: 1, or of finite strain (finite_strain.hpp). Without friction by conjugate gradients on the loaded
 /// points. With friction by gradients of all loads at once, projected onto the cones, with Barzilai and
 /// Borwein's step: where a tool slides the cones hold every point, and conjugate gradients would begin anew
 /// each time. Both begin with the last tick's result, from which a tick's hardly differs: 0 to 3 iterations.
@@ -108,12 +108,6 @@ template <class Apply>
 /// A point slips from this share of its limit on, both squared: rounding of a load on its cone is below.
 inline constexpr float slips_from = 0.9999f;
 
-/// What presses on the tool's surface, of unit outward normal, over its part along m: at most 2.
-template <class V>
-[[nodiscard]] PALPATE_INLINE V slant(const SimdVec3<V>& outward, const SimdVec3<V>& m) noexcept {
-  return V(1.f) / clamp(dot(outward, m), 0.5f, 1.f);
-}
-
 /// Squared: what is along a slip, over the slip, by rounding alone. Where a tool lifts off as it slides, the
 /// slip is a thousand times the depth.
 inline constexpr float rounding2 = 4e-12f;
@@ -122,14 +116,14 @@ inline constexpr float rounding2 = 4e-12f;
 /// changes.
 struct FrictionLists : LoadLists {
   VectorList anchor, load_step, u_step;
-  AlignedList<float> held;   ///< 1 where the point has an anchor, 0 where it has just come in: no tractions
-  AlignedList<float> slant;  ///< pressure on the tool's slanted surface over its part along m
-  float step = 0;            ///< the last tick's last; 0: none [1/m]
-  float mu = 0;              ///< of the result
+  AlignedList<float> held;    ///< 1 where the point has an anchor, 0 where it has just come in: no tractions
+  AlignedList<float> per_mu;  ///< limit of the tractions over mu q, s
+  float step = 0;             ///< the last tick's last; 0: none [1/m]
+  float mu = 0;               ///< of the result
   void resize(std::size_t size) {
     LoadLists::resize(size);
     for (auto* list : {&anchor, &load_step, &u_step}) list->resize(size);
-    for (auto* list : {&held, &slant}) list->resize(size);
+    for (auto* list : {&held, &per_mu}) list->resize(size);
   }
 };
 
@@ -157,7 +151,7 @@ template <class Apply, class Coefficient>
   for (std::size_t i = 0; i < n; i += V::size()) {
     const SimdVec3<V> mi = m.load(i), P = lists.load.load(i);
     const V q = dot(mi, P);
-    lists.load.store(i, within_cone(V(lists.mu) * V(&lists.slant[i]), mi, (max)(q, zero),
+    lists.load.store(i, within_cone(V(lists.mu) * V(&lists.per_mu[i]), mi, (max)(q, zero),
                                     V(&lists.held[i]) * (P - q * mi)));
   }
   if (lists.step == 0) lists.step = first_step;
@@ -168,7 +162,7 @@ template <class Apply, class Coefficient>
     total = V(0.f);
     for (std::size_t i = 0; i < n; i += V::size()) {
       const SimdVec3<V> mi = m.load(i), P = lists.load.load(i), u = lists.u.load(i);
-      const V held(&lists.held[i]), q = dot(mi, P), mui = V(mu) * V(&lists.slant[i]),
+      const V held(&lists.held[i]), q = dot(mi, P), mui = V(mu) * V(&lists.per_mu[i]),
                                     limit = mui * (max)(q, zero);
       const SimdVec3<V> t = P - q * mi, from = u - lists.anchor.load(i);
       const V gap = dot(mi, u) - V(d + i);

@@ -185,8 +185,7 @@ class ResolvedState {
 
   [[nodiscard]] std::size_t size() const noexcept { return inside_.size(); }
   void forget() noexcept {
-    slides_ = false;
-    strength_ = {};
+    slides_ = false, strength_ = {};
     if constexpr (has_friction) result_.step = 0, carried_.clear(origin_);
     if constexpr (Strain::active) strain_.forget();
     beside_.drop();
@@ -202,7 +201,7 @@ class ResolvedState {
     for (std::size_t i = 0; i < size(); ++i) {
       system_.depth[i] *= strain_.factor();
       last_.set(i, point(i));
-      outward_.set(i, touching_[inside_[i]].outward);
+      if constexpr (Strain::active) outward_.set(i, touching_[inside_[i]].outward);
     }
     for (std::size_t i = size(); i < system_.stride(); ++i) last_.set(i, {});
     if constexpr (RegularPart::active) {
@@ -249,14 +248,14 @@ class ResolvedState {
   }
   void begin_loads(float share) noexcept {
     for (std::size_t i = 0; i < system_.stride(); i += V::size()) {
-      const SimdVec3<V> P = last_.load.load(i) + V(share) * last_.load_step.load(i);
-      if constexpr (!has_friction) {
-        (max)(dot(system_.directions().load(i), P), V(0.f)).copy_to(&pressure_.q[i]);
-      } else {
+      const SimdVec3<V> P = last_.load.load(i) + V(share) * last_.load_step.load(i),
+                        m = system_.directions().load(i);
+      (max)(dot(m, P), V(0.f)).copy_to(&pressure_.q[i]);
+      if constexpr (has_friction) {
         result_.load.store(i, P);
         result_.anchor.store(i, last_.anchor.load(i) - beside_.load(i));
         V(&last_.loaded[i]).copy_to(&result_.held[i]);
-        slant(outward_.load(i), system_.directions().load(i)).copy_to(&result_.slant[i]);
+        strain_.limit_per_mu(system_, i, outward_.load(i), V(&pressure_.q[i])).copy_to(&result_.per_mu[i]);
       }
     }
   }
@@ -325,7 +324,7 @@ class ResolvedState {
       V slips = one;
       if constexpr (has_friction) {
         const SimdVec3<V> t = across(m, P), u = result_.u.load(i);
-        const V limit = V(result_.mu) * V(&result_.slant[i]) * q, limit2 = limit * limit, held2 = dot(t, t);
+        const V limit = V(result_.mu) * V(&result_.per_mu[i]) * q, limit2 = limit * limit, held2 = dot(t, t);
         const auto sticks = held2 < V(slips_from) * limit2;
         slips = select(sticks, held2 / (max)(limit2, tiny), one);
         const auto holds = sticks && V(&result_.held[i]) > zero;
