@@ -69,7 +69,7 @@ class FiniteStrain {
   /// s of points i .. of the tool's unit outward normals, with the normal loads q.
   [[nodiscard]] PALPATE_INLINE V limit_per_mu(const PointSystem& system, std::size_t i,
                                               const SimdVec3<V>& outward, const V& q) const noexcept {
-    const V area = V(1.f) / clamp(dot(outward, system.directions().load(i)), 0.8f, 1.f),
+    const V area = V(1.f) / clamp(dot(outward, system.directions().load(i)), rim, 1.f),
             way = sqrt(V(0.5f) * (V(1.f) + area * area)),
             strain = (max)(V(strain_across_) * q / V(system.areas() + i), V(-0.5f));
     return area * way * (V(1.f) + strain);
@@ -78,6 +78,8 @@ class FiniteStrain {
   [[nodiscard]] float softening() const noexcept { return softening_; }
 
  private:
+  static constexpr float rim = 0.8f;  // cosine of the slope 3/4
+
   float k_, root_of_strain_, strain_across_;  // p/E' = 2 pi (1 - nu) q/A, p/(4 mu) = pi q/A
   float softening_ = 0, factor_ = 1;
 };

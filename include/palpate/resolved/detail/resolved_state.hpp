@@ -201,7 +201,7 @@ class ResolvedState {
     for (std::size_t i = 0; i < size(); ++i) {
       system_.depth[i] *= strain_.factor();
       last_.set(i, point(i));
-      if constexpr (Strain::active) outward_.set(i, touching_[inside_[i]].outward);
+      if constexpr (has_friction && Strain::active) outward_.set(i, touching_[inside_[i]].outward);
     }
     for (std::size_t i = size(); i < system_.stride(); ++i) last_.set(i, {});
     if constexpr (RegularPart::active) {
@@ -250,12 +250,13 @@ class ResolvedState {
     for (std::size_t i = 0; i < system_.stride(); i += V::size()) {
       const SimdVec3<V> P = last_.load.load(i) + V(share) * last_.load_step.load(i),
                         m = system_.directions().load(i);
-      (max)(dot(m, P), V(0.f)).copy_to(&pressure_.q[i]);
+      const V q = (max)(dot(m, P), V(0.f));
+      if constexpr (!has_friction) q.copy_to(&pressure_.q[i]);
       if constexpr (has_friction) {
         result_.load.store(i, P);
         result_.anchor.store(i, last_.anchor.load(i) - beside_.load(i));
         V(&last_.loaded[i]).copy_to(&result_.held[i]);
-        strain_.limit_per_mu(system_, i, outward_.load(i), V(&pressure_.q[i])).copy_to(&result_.per_mu[i]);
+        strain_.limit_per_mu(system_, i, outward_.load(i), q).copy_to(&result_.per_mu[i]);
       }
     }
   }
