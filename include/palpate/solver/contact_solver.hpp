@@ -258,7 +258,7 @@ class ContactSolver {
       state.reset();
       return {{}, result.status | status | Status::non_finite_result};
     }
-    last = {X, result, again ? 2 : 1};
+    last = {X, result, again && detail::has_settled(state.regions_) ? 2 : 1};
     return {result.wrench, result.status | status};
   }
 

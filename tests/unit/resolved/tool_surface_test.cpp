@@ -74,7 +74,7 @@ TEST_CASE_TEMPLATE("points of a leaf press by their depth, less where the tool's
         CHECK(std::abs(leaf.depth[k] - depth) <= 1e-5 * 1e-3);
         if (!(depth > 0)) continue;
         ++pressing;
-        const detail::TouchingPoint at = leaf.point(k, 7);
+        const detail::TouchingPoint at = leaf.point(k, 7, 0.f);
         CHECK(at.point == 7);
         CHECK(at.depth == leaf.depth[k]);
         const Vec3<double> place(double(x.x[k] - origin.x()), double(x.y[k] - origin.y()),

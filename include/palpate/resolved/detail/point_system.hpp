@@ -69,6 +69,7 @@ class PointSystem {
   }
   [[nodiscard]] const VectorList& directions() const noexcept { return m_; }  ///< of pressing
   [[nodiscard]] const VectorList& normals() const noexcept { return n_; }     ///< inward
+  [[nodiscard]] const VectorList& positions() const noexcept { return x_at_; }
   [[nodiscard]] const VectorList& feet() const noexcept { return x_; }
   [[nodiscard]] const float* areas() const noexcept { return area_.data(); }
   [[nodiscard]] Vec3<float> direction(std::size_t i) const noexcept { return m_[i]; }

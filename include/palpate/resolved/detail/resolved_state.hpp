@@ -8,6 +8,7 @@
 #include <palpate/core/pose.hpp>
 #include <palpate/detection/tool_points.hpp>
 #include <palpate/resolved/contact_points.hpp>
+#include <palpate/resolved/detail/body_shift.hpp>
 #include <palpate/resolved/detail/bounded_list.hpp>
 #include <palpate/resolved/detail/carried_surface.hpp>
 #include <palpate/resolved/detail/contact_area.hpp>
@@ -15,6 +16,7 @@
 #include <palpate/resolved/detail/finite_strain.hpp>
 #include <palpate/resolved/detail/loads_beside.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
+#include <palpate/resolved/detail/reaction.hpp>
 #include <palpate/resolved/detail/static_strength.hpp>
 #include <palpate/resolved/detail/tick_change.hpp>
 #include <palpate/resolved/detail/tool_surface.hpp>
@@ -23,7 +25,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <span>
 #include <utility>
@@ -36,6 +37,7 @@ template <Real S, ContactCompliance Compliance, bool has_friction_, std::size_t 
 class ResolvedState {
  public:
   static constexpr bool has_friction = has_friction_;
+  static constexpr bool moves = has_friction || RegularPartOf<Compliance>::type::active;  ///< the surface
   using Force = ElasticContact<S, Compliance>;
 
   ResolvedState(const Compliance& body, std::size_t tool_points, std::size_t capacity)
@@ -53,7 +55,8 @@ class ResolvedState {
     last_.resize(padded);
     pressure_.resize(padded);
     result_.resize(padded);
-    for (auto* list : {&outward_, &felt_, &anchor_}) list->resize(padded);
+    reaction_.resize(padded);
+    outward_.resize(padded);
   }
 
   void reset() noexcept {
@@ -108,15 +111,28 @@ class ResolvedState {
   }
   /// Where the tool at X is over the undeformed surface, which others' loads move.
   [[nodiscard]] Pose<S> over(const Pose<S>& X) const noexcept { return beside_.over(X); }
-  /// Where friction has carried the surface.
-  [[nodiscard]] const auto& carried() const noexcept { return carried_; }
-  /// Tool points from `begin` on, a leaf, over x in object coordinates (carried().before()), are in the body;
-  /// `rotation`: of the tool. Returns how deep [m].
+  /// How far the body has given way there; and whether another tick at the same pose would change nothing.
+  [[nodiscard]] S shift() const noexcept { return static_cast<S>(shift_.most()); }
+  [[nodiscard]] bool has_settled() const noexcept { return shift_.has_settled(); }
+  /// True where nothing touches and the body may have come back in part: look again, `tries` from 1 on.
+  [[nodiscard]] bool look_again(int tries) noexcept { return touching_.empty() && shift_.come_back(tries); }
+  /// A leaf of the tool's points over the surface as it lay before the body bent and friction carried it.
+  [[nodiscard]] PointBatch<S> before(const PointBatch<S>& x) const noexcept {
+    if constexpr (has_friction) return carried_.before(shift_.before(x));
+    return shift_.before(x);
+  }
+  [[nodiscard]] S most_before() const noexcept {
+    if constexpr (has_friction) return shift() + carried_.most();
+    return shift();
+  }
+  /// Tool points from `begin` on, a leaf, over x in object coordinates (before()), are in the body;
+  /// `rotation`: of the tool; the first is at `first` where it is. Returns how deep [m].
   S touch(const ToolSurface<S>& surface, std::uint32_t begin, const Mat3<float>& rotation,
-          const PointBatch<S>& x, const PenetrationBatch<S>& in) noexcept {
+          const Vec3<S>& first, const PointBatch<S>& x, const PenetrationBatch<S>& in) noexcept {
     if (touching_.empty()) origin_ = Vec3<S>(x.x[0], x.y[0], x.z[0]);
     const TouchingLeaf leaf = surface.find(begin, rotation, x, in, origin_);
     if (!(leaf.volume > 0)) return S(0);
+    const float shifted = shift_.share_at(first);
     if (!touching_.full()) system_.touch(leaf.deepest, leaf.volume, leaf.volume_x, leaf.volume_m);
     S deepest = S(0);
     for (std::uint32_t k = 0; k < batch_size; ++k) {
@@ -124,7 +140,7 @@ class ResolvedState {
       deepest = (std::max)(deepest, in.depth[k]);
       has_room_ = !touching_.full();
       if (!has_room_) continue;
-      touching_.push_back(leaf.point(k, begin + k));
+      touching_.push_back(leaf.point(k, begin + k, shifted));
       Point& p = points_[begin + k];
       if (p.tick + 1 != tick_) p = {};
       p.tick = tick_;
@@ -147,6 +163,8 @@ class ResolvedState {
     float size2 = 0;
     for (const Touching& c : touching_) size2 += c.depth * c.depth;
     const float tolerance = static_cast<float>(force.params().tolerance) * std::sqrt(size2);
+    const Vec3<S>& x = tool.point(touching_[0].point);
+    const float way = first ? 0.f : static_cast<float>((X * x - before * x).norm());
     if constexpr (has_friction) move_anchors(before, X, tool);
     // First those that carry load or came near to it.
     inside_.clear();
@@ -165,7 +183,7 @@ class ResolvedState {
       const bool again = Strain::active && first && round == 0;  // the strain was not known
       if (round == most_rounds || !take_in(force, tool, tolerance, again)) break;
     }
-    finish(tool);
+    finish(tool, way);
     bool all = has_room_ && beside_.has_all();
     if constexpr (RegularPart::active) all = all && regular_.has_all();
     beside_.drop();
@@ -175,6 +193,7 @@ class ResolvedState {
  private:
   using RegularPart = typename RegularPartOf<Compliance>::type;
   using Strain = std::conditional_t<RegularPart::active, FiniteStrain, LinearStrain>;
+  using Shift = std::conditional_t<RegularPart::active, BodyShift<S, has_friction>, NoBodyShift>;
   using Beside = std::conditional_t<(max_beside > 0), LoadsBeside<S>, NoLoadsBeside>;
   static constexpr float near = 0.05f;   // of the depth; with less gap points are solved for at once
   static constexpr int most_rounds = 3;  // in which points may come in within a tick
@@ -188,7 +207,7 @@ class ResolvedState {
     slides_ = false, strength_ = {};
     if constexpr (has_friction) result_.step = 0, carried_.clear(origin_);
     if constexpr (Strain::active) strain_.forget();
-    beside_.drop();
+    shift_.forget(), beside_.drop();
   }
   [[nodiscard]] Point& point(std::size_t i) noexcept { return points_[touching_[inside_[i]].point]; }
   void build(const Force& force, const ToolPoints<S>& tool) noexcept {
@@ -199,6 +218,8 @@ class ResolvedState {
     }
     system_.build();
     for (std::size_t i = 0; i < size(); ++i) {
+      if constexpr (Shift::active)
+        system_.depth[i] += touching_[inside_[i]].shifted * system_.direction(i).dot(shift_.v());
       system_.depth[i] *= strain_.factor();
       last_.set(i, point(i));
       if constexpr (has_friction && Strain::active) outward_.set(i, touching_[inside_[i]].outward);
@@ -276,8 +297,9 @@ class ResolvedState {
       // Gaps change little in a tick: each is looked at in every eighth.
       if ((tick_ + at.point) % 8 != 0) continue;
       const Vec3<float> m = system_.direction_at(at.x, at.m);
-      const float depth = at.depth / m.dot(at.m);
+      float depth = at.depth / m.dot(at.m);
       const Vec3<float> foot = at.x - depth * m;
+      depth += at.shifted * m.dot(shift_.v());
       float gap = system_.normal_displacement_at(pressure_.q.data(), foot, m,
                                                  static_cast<float>(tool.area(at.point))) -
                   strain_.factor() * depth;
@@ -311,39 +333,13 @@ class ResolvedState {
     const S normal = static_cast<S>(q) * per_load_;
     return normal > S(0) ? strength_.coefficient(friction, normal) : 0.f;
   }
-  // What points feel, where they hold the surface and whether they stick: felt_, anchor_, last_.sticks.
-  // Returns the sums of normal loads, and of those that stick.
-  std::pair<float, float> react() noexcept {
+  void finish(const ToolPoints<S>& tool, [[maybe_unused]] float way) noexcept {
     SimdVec3<V> slope{};
-    if constexpr (RegularPart::active) slope = each(regular_.slope(system_, pressure_.q.data(), beside_));
-    const V zero(0.f), one(1.f), tiny((std::numeric_limits<float>::min)());
-    V total{}, sticking{};
-    for (std::size_t i = 0; i < system_.stride(); i += V::size()) {
-      const SimdVec3<V> m = system_.directions().load(i), n = system_.normals().load(i),
-                        P = result_.load.load(i);
-      const V q(&pressure_.q[i]);
-      V slips = one;
-      if constexpr (has_friction) {
-        const SimdVec3<V> t = across(m, P), u = result_.u.load(i);
-        const V limit = V(result_.mu) * V(&result_.per_mu[i]) * q, limit2 = limit * limit, held2 = dot(t, t);
-        const auto sticks = held2 < V(slips_from) * limit2;
-        slips = select(sticks, held2 / (max)(limit2, tiny), one);
-        const auto holds = sticks && V(&result_.held[i]) > zero;
-        const SimdVec3<V> a = result_.anchor.load(i),
-                          kept{select(holds, a.x, u.x), select(holds, a.y, u.y), select(holds, a.z, u.z)};
-        anchor_.store(i, across(m, beside_.load(i) + kept));
-        select(sticks, one, zero).copy_to(&last_.sticks[i]);
-        total += q, sticking += select(sticks, q, zero);
-      }
-      // The tool feels minus the gradient of the energy as far as the point slips: of the depth along the
-      // direction of pressing, and of the regular part. Where it sticks the body goes with it.
-      felt_.store(i, P + (slips * q) * (one / (max)(dot(n, m), tiny) * n - m - slope));
-    }
-    return {reduce(total), reduce(sticking)};
-  }
-
-  void finish(const ToolPoints<S>& tool) noexcept {
-    const auto [total, sticking] = react();
+    if constexpr (RegularPart::active) slope = each<V>(regular_.slope(system_, pressure_.q.data(), beside_));
+    reaction_.measure(system_, pressure_.q.data(), result_, slope, beside_);
+    const Vec3<float> v = shift_.v();
+    if constexpr (Shift::active)
+      shift_.measure(system_, pressure_.q.data(), regular_.response(), origin_, way);
     if constexpr (has_friction) carried_.clear(origin_);
     for (std::size_t i = 0; i < size(); ++i) {
       const Touching& at = touching_[inside_[i]];
@@ -355,18 +351,21 @@ class ResolvedState {
       p.sticks = false;
       if (!p.loaded) continue;
       if constexpr (has_friction) {
-        p.sticks = last_.sticks[i] > 0;
-        p.anchor = anchor_[i];
+        p.sticks = reaction_.sticks(i);
+        p.anchor = reaction_.anchor(i);
+        const Vec3<float> m = system_.direction(i);
         carried_.add(at.point / static_cast<std::uint32_t>(batch_size), at.x, q,
-                     beside_.own(p.anchor, system_.direction(i)), static_cast<float>(tool.area(at.point)));
+                     beside_.own(shift_.own(p.anchor, m, at.shifted), m),
+                     static_cast<float>(tool.area(at.point)));
       }
       contacts_.push_back({at.point, p.sticks, pose_ * tool.point(at.point), -at.m.template cast<S>(),
-                           -per_load_ * felt_[i].template cast<S>(),
-                           per_load_ * static_cast<S>(q) / tool.area(at.point), static_cast<S>(at.depth)});
+                           -per_load_ * reaction_.felt(i).template cast<S>(),
+                           per_load_ * static_cast<S>(q) / tool.area(at.point),
+                           static_cast<S>(at.depth + at.shifted * at.m.dot(v))});
     }
     if constexpr (has_friction) {
       carried_.build();
-      slides_ = strength_.remember(total, sticking, system_, pressure_, result_);
+      slides_ = strength_.remember(reaction_.total(), reaction_.sticking(), system_, pressure_, result_);
     }
   }
 
@@ -378,13 +377,14 @@ class ResolvedState {
   MemoryLists last_;  // of those that are solved for
   Unloaded unloaded_;
   PressureLists pressure_;
-  std::conditional_t<has_friction, FrictionLists, LoadLists> result_;
+  typename Reaction<has_friction>::Loads result_;
+  Reaction<has_friction> reaction_;
   VectorList outward_;  // the tool's normals
-  VectorList felt_, anchor_;
   PALPATE_NO_UNIQUE_ADDRESS RegularPart regular_;
   PALPATE_NO_UNIQUE_ADDRESS Beside beside_;
   PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<has_friction, CarriedSurface<S>, StillSurface> carried_;
   PALPATE_NO_UNIQUE_ADDRESS Strain strain_;
+  PALPATE_NO_UNIQUE_ADDRESS Shift shift_;
   Residual residual_;
   Pose<S> pose_;
   Vec3<S> origin_;

@@ -32,19 +32,23 @@ class ResolvedCollector {
                TickResult<S>& result) const noexcept {
     result.status = Status::ok;
     state.begin_tick(object, force, tool, X);
-    const Pose<S> over = state.over(X);
     const Mat3<float> rotation = X.rotation.template cast<float>();
     S deepest = S(0);
+    const Pose<S> over = state.over(X);
     const auto touch = [&](std::uint32_t begin, const PointBatch<S>& x,
                            const PenetrationBatch<S>& in) noexcept {
-      deepest = (std::max)(deepest, state.touch(surface_, begin, rotation, x, in));
+      deepest = (std::max)(deepest, state.touch(surface_, begin, rotation, over * tool.point(begin), x, in));
     };
-    if constexpr (has_friction) {
-      const auto before = [&](const PointBatch<S>& x) noexcept { return state.carried().before(x); };
-      for_each_touching_leaf(tool, over, object, touch, before, state.carried().most());
-    } else {
-      for_each_touching_leaf(tool, over, object, touch);
-    }
+    int looks = 0;
+    do {
+      if constexpr (State::moves) {
+        const auto before = [&](const PointBatch<S>& x) noexcept { return state.before(x); };
+        for_each_touching_leaf(tool, over, object, touch, before, state.most_before());
+      } else {
+        for_each_touching_leaf(tool, over, object, touch);
+      }
+    } while (state.look_again(++looks));
+    const S shift = state.shift();  // of this tick: solve() leaves the next one's
     const bool was_touching = state.has_contact();
     if (!state.solve(force, friction, tool, X)) result.status |= Status::point_overflow;
     if (!state.has_contact()) return;
@@ -53,7 +57,7 @@ class ResolvedCollector {
     if (state.residual().relative > S(10) * static_cast<S>(force.params().tolerance))
       result.status |= Status::unconverged;
     if (!was_touching) ++state.id;
-    contacts.push_back(summed(tool, X, Acting{}, state, deepest, result.wrench));
+    contacts.push_back(summed(tool, X, Acting{}, state, deepest + shift, result.wrench));
   }
 
  private:
@@ -106,6 +110,14 @@ template <ResolvedTopology Contacts, Real S, class Coupling, class Force, bool h
 struct CollectorOf<Contacts, S, Coupling, Force, has_friction> {
   using type = ResolvedCollector<Contacts, S, Force, has_friction>;
 };
+
+/// False where a resolved contact has not come to rest after two ticks at a pose.
+[[nodiscard]] inline bool has_settled(const auto& state) noexcept {
+  if constexpr (requires { state.has_settled(); })
+    return state.has_settled();
+  else
+    return true;
+}
 
 /// A collector that resolves asks the force model, one that does not the coupling.
 template <class Gather>

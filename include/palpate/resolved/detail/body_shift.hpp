@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file How far a body gives way as a whole beneath a tool: so far beside lay what the tool now touches.
+
+#include <palpate/core/scalar.hpp>
+#include <palpate/core/simd_math.hpp>
+#include <palpate/geometry/concept.hpp>
+#include <palpate/resolved/detail/point_system.hpp>
+#include <palpate/resolved/detail/vector_list.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace palpate::detail {
+
+/// A thin part bends away from the tool by more than it is thick, and friction draws it along. So points are
+/// looked for at X - v, and a point's depth is m.v more, of the last tick's regular displacements w_i and
+/// normal loads q_i:
+///
+///     v = share sum q_i w_i / sum q_i               with friction
+///     v = share sum q_i (m_i.w_i) m_i / sum q_i     without: nothing draws it aside
+///     share = max(1 - 2 s/mean, 0)
+///
+/// mean, s: of w_i by q_i, without friction of m_i.w_i, and its deviation; of a tool that touches at several
+/// places v is no more than any of them has given way. Where it does not touch yet the shift fades,
+///
+///     phi(x) v,   phi = 1/(1 + (r^2/L^2)^2),   L = 4 sqrt(A + v^2)
+///
+/// r: from the middle of the loads, A: their area; L is chosen. v only chooses which points
+/// are found, and where on the surface: on a plane no force depends on it. Without friction w across would:
+/// the work of a closed path on an ellipsoid is then 15 % of all work to and fro.
+template <Real S, bool has_friction>
+class BodyShift {
+ public:
+  using V = VectorList::V;
+  static constexpr bool active = true;
+
+  void forget() noexcept { v_ = Vec3<float>::Zero(), has_settled_ = true; }
+  /// Whether another tick at the same pose would find the same points.
+  [[nodiscard]] bool has_settled() const noexcept { return has_settled_; }
+  /// After a solve with normal loads q and regular displacements w; positions are relative to `origin` [m].
+  /// `way`: of the tool in this tick; what begins deep in the body finds its points over some ticks.
+  void measure(const PointSystem& system, const float* q, const VectorList& w, const Vec3<S>& origin,
+               float way) noexcept {
+    V loads{}, sizes{}, squares{}, areas{};
+    SimdVec3<V> sum{}, places{};
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+      const V qi(q + i);
+      loads += qi, places += qi * system.positions().load(i);
+      areas += select(qi > V(0.f), V(system.areas() + i), V(0.f));
+      if constexpr (has_friction) {
+        const SimdVec3<V> wi = w.load(i);
+        squares += qi * dot(wi, wi), sum += qi * wi;
+      } else {
+        const SimdVec3<V> m = system.directions().load(i);
+        const V along = dot(m, w.load(i));
+        sizes += qi * along, squares += qi * along * along, sum += (qi * along) * m;
+      }
+    }
+    const float load = reduce(loads);
+    if (!(load > 0)) return forget();
+    const Vec3<float> mean = sum_of(sum) / load;
+    const float size = has_friction ? mean.norm() : reduce(sizes) / load;
+    if (!(size > 0)) return forget();
+    const float deviation = std::sqrt((std::max)(reduce(squares) / load - size * size, 0.f));
+    const float share = (std::max)(1 - reach * deviation / size, 0.f);
+    const Vec3<float> target = share * mean, change = target - v_;
+    const float most = 2 * way + slowly * (system.deepest() + v_.norm()), length = change.norm();
+    has_settled_ = length <= settled * target.norm();
+    const bool grows = target.squaredNorm() > v_.squaredNorm();
+    v_ += grows && length > most ? Vec3<float>(most / length * change) : change;
+    middle_ = origin + (sum_of(places) / load).template cast<S>() + v_.template cast<S>();
+    area_ = reduce(areas);
+  }
+  /// After `tries` looks in vain, the tool having come back in a tick: v is less by an eighth of what it was.
+  /// False at the end, where v is 0. At once from 0 a part that is thinner than the tool was deep would be
+  /// met from its far side.
+  [[nodiscard]] bool come_back(int tries) noexcept {
+    if (v_.isZero(0)) return false;
+    v_ *= float(most_tries - tries) / float(most_tries + 1 - tries);
+    return true;
+  }
+  /// v [m]
+  [[nodiscard]] const Vec3<float>& v() const noexcept { return v_; }
+  /// phi at x in object coordinates.
+  [[nodiscard]] float share_at(const Vec3<S>& x) const noexcept {
+    const float r2 = static_cast<float>((x - middle_).squaredNorm()),
+                far = r2 / (16 * (area_ + v_.squaredNorm()) + (std::numeric_limits<float>::min)());
+    return 1 / (1 + far * far);
+  }
+  /// At least |phi v| anywhere [m].
+  [[nodiscard]] S most() const noexcept { return static_cast<S>(v_.norm()); }
+  /// A leaf of the tool's points over the undeformed surface.
+  [[nodiscard]] PointBatch<S> before(const PointBatch<S>& now) const noexcept {
+    PointBatch<S> x = now;
+    const S phi = static_cast<S>(share_at({x.x[0], x.y[0], x.z[0]}));
+    const Vec3<S> s = phi * v_.template cast<S>();
+    for (std::size_t i = 0; i < batch_size; ++i) x.x[i] -= s.x(), x.y[i] -= s.y(), x.z[i] -= s.z();
+    return x;
+  }
+  /// Of a displacement a across m, what v does not contain.
+  [[nodiscard]] Vec3<float> own(const Vec3<float>& a, const Vec3<float>& m, float phi) const noexcept {
+    return a - phi * (v_ - m.dot(v_) * m);
+  }
+
+ private:
+  static constexpr int most_tries = 8;
+  static constexpr float settled = 1e-3f;  // of v, which hardly changes what it chooses
+  static constexpr float slowly = 0.01f;   // of the depth in a tick: no force is felt to change
+  static constexpr float reach = 2;        // deviations, as for others' loads (loads_beside.hpp)
+
+  Vec3<float> v_ = Vec3<float>::Zero();
+  Vec3<S> middle_ = Vec3<S>::Zero();  // object coordinates
+  float area_ = 0;
+  bool has_settled_ = true;
+};
+
+/// Of a half-space, which has no regular displacements.
+struct NoBodyShift {
+  static constexpr bool active = false;
+  static void forget() noexcept {}
+  [[nodiscard]] static bool has_settled() noexcept { return true; }
+  [[nodiscard]] static bool come_back(int) noexcept { return false; }
+  [[nodiscard]] static Vec3<float> v() noexcept { return Vec3<float>::Zero(); }
+  [[nodiscard]] static float share_at(const auto&) noexcept { return 0; }
+  [[nodiscard]] static int most() noexcept { return 0; }
+  [[nodiscard]] static const auto& before(const auto& x) noexcept { return x; }
+  [[nodiscard]] static const auto& own(const auto& a, const auto& /*m*/, float) noexcept { return a; }
+};
+
+}  // namespace palpate::detail

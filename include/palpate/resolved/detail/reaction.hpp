@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file What the tool feels of a tick's loads.
+
+#include <palpate/core/aligned_list.hpp>
+#include <palpate/core/simd_math.hpp>
+#include <palpate/resolved/detail/convex_problem.hpp>
+#include <palpate/resolved/detail/point_system.hpp>
+#include <palpate/resolved/detail/vector_list.hpp>
+
+#include <cstddef>
+#include <limits>
+
+namespace palpate::detail {
+
+/// Forces at a contact's points, which of them stick, and where these hold the surface.
+template <bool has_friction>
+class Reaction {
+ public:
+  using V = VectorList::V;
+  using Loads = std::conditional_t<has_friction, FrictionLists, LoadLists>;
+
+  void resize(std::size_t size) {
+    felt_.resize(size);
+    if (!has_friction) return;
+    anchor_.resize(size);
+    sticks_.resize(size);
+  }
+
+  /// Of the loads `result`, normal ones q. `slope`: gradient of the regular part along the surface; `beside`:
+  /// displacements by others' loads.
+  void measure(const PointSystem& system, const float* q, const Loads& result, const SimdVec3<V>& slope,
+               const auto& beside) noexcept {
+    const V zero(0.f), one(1.f), tiny((std::numeric_limits<float>::min)());
+    V total{}, sticking{};
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+      const SimdVec3<V> m = system.directions().load(i), n = system.normals().load(i),
+                        P = result.load.load(i);
+      const V qi(q + i);
+      V slips = one;
+      if constexpr (has_friction) {
+        const SimdVec3<V> t = across(m, P), u = result.u.load(i);
+        const V limit = V(result.mu) * V(&result.per_mu[i]) * qi, limit2 = limit * limit, held2 = dot(t, t);
+        const auto sticks = held2 < V(slips_from) * limit2;
+        slips = select(sticks, held2 / (max)(limit2, tiny), one);
+        const auto holds = sticks && V(&result.held[i]) > zero;
+        const SimdVec3<V> a = result.anchor.load(i),
+                          kept{select(holds, a.x, u.x), select(holds, a.y, u.y), select(holds, a.z, u.z)};
+        anchor_.store(i, across(m, beside.load(i) + kept));
+        select(sticks, one, zero).copy_to(&sticks_[i]);
+        total += qi, sticking += select(sticks, qi, zero);
+      }
+      // The tool feels minus the gradient of the energy as far as the point slips: of the depth along the
+      // direction of pressing, and of the regular part. Where it sticks the body goes with it.
+      felt_.store(i, P + (slips * qi) * (one / (max)(dot(n, m), tiny) * n - m - slope));
+    }
+    total_ = reduce(total), sticking_ = reduce(sticking);
+  }
+
+  [[nodiscard]] Vec3<float> felt(std::size_t i) const noexcept { return felt_[i]; }      ///< -f/(4 pi mu)
+  [[nodiscard]] Vec3<float> anchor(std::size_t i) const noexcept { return anchor_[i]; }  ///< [m]
+  [[nodiscard]] bool sticks(std::size_t i) const noexcept { return sticks_[i] > 0; }
+  /// Sums of normal loads, with friction: of all points, and of those that stick.
+  [[nodiscard]] float total() const noexcept { return total_; }
+  [[nodiscard]] float sticking() const noexcept { return sticking_; }
+
+ private:
+  VectorList felt_, anchor_;
+  AlignedList<float> sticks_;  // 1, or 0
+  float total_ = 0, sticking_ = 0;
+};
+
+}  // namespace palpate::detail
