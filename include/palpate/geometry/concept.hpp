@@ -73,6 +73,14 @@ struct alignas(64) PenetrationBatch {
 };
 
 namespace detail {
+/// Each position less s.
+template <Real S>
+[[nodiscard]] inline PointBatch<S> less(const PointBatch<S>& from, const Vec3<S>& s) noexcept {
+  PointBatch<S> x = from;
+  for (std::size_t i = 0; i < batch_size; ++i) x.x[i] -= s.x(), x.y[i] -= s.y(), x.z[i] -= s.z();
+  return x;
+}
+
 /// In what a batch's formulas are worked out, by counts of instructions: a register with AVX, whose
 /// instructions take a third operand and repeat a number from memory; four without.
 #if defined(__AVX__)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file How far a body gives way as a whole beneath a tool: so far beside lay what the tool now touches.
+/// @file The mean regular displacement of a body beneath a tool: what the tool touches lay so far beside.
 
 #include <palpate/core/scalar.hpp>
 #include <palpate/core/simd_math.hpp>
@@ -25,13 +25,13 @@ namespace palpate::detail {
 ///     share = max(1 - 2 s/mean, 0)
 ///
 /// mean, s: of w_i by q_i, without friction of m_i.w_i, and its deviation; of a tool that touches at several
-/// places v is no more than any of them has given way. Where it does not touch yet the shift fades,
+/// places v is no more than the displacement of any. Where it does not touch yet the shift fades,
 ///
 ///     phi(x) v,   phi = 1/(1 + (r^2/L^2)^2),   L = 4 sqrt(A + v^2)
 ///
-/// r: from the middle of the loads, A: their area; L is chosen. v only chooses which points
-/// are found, and where on the surface: on a plane no force depends on it. Without friction w across would:
-/// the work of a closed path on an ellipsoid is then 15 % of all work to and fro.
+/// r: from the middle of the loads, A: their area; L is chosen. v only chooses which points are found, and
+/// where on the surface: on a plane no force depends on it. Without friction w across would: the work of a
+/// closed path on an ellipsoid is then 15 % of all work to and fro.
 template <Real S, bool has_friction>
 class BodyShift {
  public:
@@ -42,9 +42,9 @@ class BodyShift {
   /// Whether another tick at the same pose would find the same points.
   [[nodiscard]] bool has_settled() const noexcept { return has_settled_; }
   /// After a solve with normal loads q and regular displacements w; positions are relative to `origin` [m].
-  /// `way`: of the tool in this tick; what begins deep in the body finds its points over some ticks.
+  /// `moved`: by the tool in this tick; what begins deep in the body finds its points over some ticks.
   void measure(const PointSystem& system, const float* q, const VectorList& w, const Vec3<S>& origin,
-               float way) noexcept {
+               float moved) noexcept {
     V loads{}, sizes{}, squares{}, areas{};
     SimdVec3<V> sum{}, places{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
@@ -68,7 +68,7 @@ class BodyShift {
     const float deviation = std::sqrt((std::max)(reduce(squares) / load - size * size, 0.f));
     const float share = (std::max)(1 - reach * deviation / size, 0.f);
     const Vec3<float> target = share * mean, change = target - v_;
-    const float most = 2 * way + slowly * (system.deepest() + v_.norm()), length = change.norm();
+    const float most = 2 * moved + slowly * (system.deepest() + v_.norm()), length = change.norm();
     has_settled_ = length <= settled * target.norm();
     const bool grows = target.squaredNorm() > v_.squaredNorm();
     v_ += grows && length > most ? Vec3<float>(most / length * change) : change;
@@ -95,11 +95,8 @@ class BodyShift {
   [[nodiscard]] S most() const noexcept { return static_cast<S>(v_.norm()); }
   /// A leaf of the tool's points over the undeformed surface.
   [[nodiscard]] PointBatch<S> before(const PointBatch<S>& now) const noexcept {
-    PointBatch<S> x = now;
-    const S phi = static_cast<S>(share_at({x.x[0], x.y[0], x.z[0]}));
-    const Vec3<S> s = phi * v_.template cast<S>();
-    for (std::size_t i = 0; i < batch_size; ++i) x.x[i] -= s.x(), x.y[i] -= s.y(), x.z[i] -= s.z();
-    return x;
+    const S phi = static_cast<S>(share_at({now.x[0], now.y[0], now.z[0]}));
+    return less(now, Vec3<S>(phi * v_.template cast<S>()));
   }
   /// Of a displacement a across m, what v does not contain.
   [[nodiscard]] Vec3<float> own(const Vec3<float>& a, const Vec3<float>& m, float phi) const noexcept {

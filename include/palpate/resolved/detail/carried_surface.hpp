@@ -72,10 +72,7 @@ class CarriedSurface {
   [[nodiscard]] S most() const noexcept { return static_cast<S>(most_); }
   /// A leaf of the tool's points over the surface as it lay before.
   [[nodiscard]] PointBatch<S> before(const PointBatch<S>& now) const noexcept {
-    PointBatch<S> x = now;
-    const Vec3<S> s = at(Vec3<S>(x.x[0], x.y[0], x.z[0])).template cast<S>();
-    for (std::size_t i = 0; i < batch_size; ++i) x.x[i] -= s.x(), x.y[i] -= s.y(), x.z[i] -= s.z();
-    return x;
+    return less(now, Vec3<S>(at({now.x[0], now.y[0], now.z[0]}).template cast<S>()));
   }
 
  private:

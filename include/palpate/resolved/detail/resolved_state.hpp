@@ -111,7 +111,7 @@ class ResolvedState {
   }
   /// Where the tool at X is over the undeformed surface, which others' loads move.
   [[nodiscard]] Pose<S> over(const Pose<S>& X) const noexcept { return beside_.over(X); }
-  /// How far the body has given way there; and whether another tick at the same pose would change nothing.
+  /// The regular displacement there; and whether another tick at the same pose would change nothing.
   [[nodiscard]] S shift() const noexcept { return static_cast<S>(shift_.most()); }
   [[nodiscard]] bool has_settled() const noexcept { return shift_.has_settled(); }
   /// True where nothing touches and the body may have come back in part: look again, `tries` from 1 on.
@@ -164,7 +164,7 @@ class ResolvedState {
     for (const Touching& c : touching_) size2 += c.depth * c.depth;
     const float tolerance = static_cast<float>(force.params().tolerance) * std::sqrt(size2);
     const Vec3<S>& x = tool.point(touching_[0].point);
-    const float way = first ? 0.f : static_cast<float>((X * x - before * x).norm());
+    const float moved = first ? 0.f : static_cast<float>((X * x - before * x).norm());
     if constexpr (has_friction) move_anchors(before, X, tool);
     // First those that carry load or came near to it.
     inside_.clear();
@@ -183,7 +183,7 @@ class ResolvedState {
       const bool again = Strain::active && first && round == 0;  // the strain was not known
       if (round == most_rounds || !take_in(force, tool, tolerance, again)) break;
     }
-    finish(tool, way);
+    finish(tool, moved);
     bool all = has_room_ && beside_.has_all();
     if constexpr (RegularPart::active) all = all && regular_.has_all();
     beside_.drop();
@@ -333,13 +333,13 @@ class ResolvedState {
     const S normal = static_cast<S>(q) * per_load_;
     return normal > S(0) ? strength_.coefficient(friction, normal) : 0.f;
   }
-  void finish(const ToolPoints<S>& tool, [[maybe_unused]] float way) noexcept {
+  void finish(const ToolPoints<S>& tool, [[maybe_unused]] float moved) noexcept {
     SimdVec3<V> slope{};
     if constexpr (RegularPart::active) slope = each<V>(regular_.slope(system_, pressure_.q.data(), beside_));
     reaction_.measure(system_, pressure_.q.data(), result_, slope, beside_);
     const Vec3<float> v = shift_.v();
     if constexpr (Shift::active)
-      shift_.measure(system_, pressure_.q.data(), regular_.response(), origin_, way);
+      shift_.measure(system_, pressure_.q.data(), regular_.response(), origin_, moved);
     if constexpr (has_friction) carried_.clear(origin_);
     for (std::size_t i = 0; i < size(); ++i) {
       const Touching& at = touching_[inside_[i]];
