@@ -80,9 +80,17 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     PROPERTIES EXCLUDE_FROM_ALL ON)
 endif()
 
-# Two objects of one program, each with every header, that both set up and use a response field: header-only,
-# and the field alone against the compiled set-up. What matters is that there are two: the second is a copy of
-# the first, and costs nothing to compile.
+# An engine: no exceptions, no RTTI, fast-math, and a palpate_config.hpp of its own.
+set(host_flags -fno-exceptions -fno-rtti -ffast-math)
+add_executable(palpate_test_host host/main.cpp)
+palpate_own_target(palpate_test_host)
+target_include_directories(palpate_test_host PRIVATE host/config)
+target_compile_options(palpate_test_host PRIVATE ${host_flags})
+add_test(NAME host COMMAND palpate_test_host)
+
+# Two objects of one program that both set up and use a response field: each with every header, header-only, as
+# that engine's; and the field alone against the compiled set-up. What matters is that there are two: the second
+# is a copy of the first, and costs nothing to compile.
 function(palpate_two_objects program source)  # and what they link
   add_library(palpate_test_${program}_object OBJECT odr/${source}.cpp)
   set(second ${CMAKE_CURRENT_BINARY_DIR}/${program}_second${CMAKE_CXX_OUTPUT_EXTENSION})
@@ -102,14 +110,10 @@ function(palpate_two_objects program source)  # and what they link
   add_test(NAME ${program} COMMAND palpate_test_${program})
 endfunction()
 palpate_two_objects(odr all Threads::Threads)
+target_sources(palpate_test_odr PRIVATE host/hooks.cpp)
+target_include_directories(palpate_test_odr_object PRIVATE host/config)
+target_compile_options(palpate_test_odr_object PRIVATE ${host_flags})
 palpate_two_objects(odr_compiled field palpate::compiled_response)
-
-# An engine: no exceptions, no RTTI, fast-math, and a palpate_config.hpp of its own.
-add_executable(palpate_test_host host/main.cpp)
-palpate_own_target(palpate_test_host)
-target_include_directories(palpate_test_host PRIVATE host/config ${generated})
-target_compile_options(palpate_test_host PRIVATE -fno-exceptions -fno-rtti -ffast-math)
-add_test(NAME host COMMAND palpate_test_host)
 
 # Without exceptions and without a handler: the message on stderr, then abort().
 add_executable(palpate_test_host_default host/default_handler.cpp)

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
-// An engine as a host: every header without exceptions, without RTTI, under -ffast-math, with its own hooks.
-#include <all_headers.hpp>  // generated: each header of include/palpate
+// An engine as a host: without exceptions, without RTTI, under -ffast-math, with its own hooks.
+#include <palpate/core/error.hpp>
+#include <palpate/core/fixed_vector.hpp>
+#include <palpate/core/pose.hpp>
+#include <palpate/law/force/duffing.hpp>
 
 #include <csetjmp>
 #include <cstdio>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Everything a user can include.
+// Everything a user can include, as an engine would (tests/build.cmake).
 #if __has_include(<palpate/palpate.hpp>)
 #include <palpate/palpate.hpp>
 #endif
@@ -7,6 +7,8 @@
 
 #include "field.hpp"
 #include "objects.hpp"
+
+static_assert(!PALPATE_HAS_EXCEPTIONS);
 
 /// Functions of the library: one definition in the program means one address.
 struct Seen {

@@ -9,7 +9,6 @@
 #include "support/response_bodies.hpp"
 #include "support/walker.hpp"
 
-#include <cstdlib>
 #include <string>
 
 namespace {
@@ -42,8 +41,7 @@ void roll_over(const test::ResponseBody& body) {
   };
   const double h = field.mesh().length, modulus = 1e5 / (1 - body.nu * body.nu);
   double force_jump = 0, field_jump = 0, most = 0, stiffest = 0;
-  const char* wanted = std::getenv("PALPATE_PATHS");
-  const int paths = wanted != nullptr ? std::atoi(wanted) : 200, steps = 40;
+  const int paths = test::wanted_paths(72, 10000), steps = 40;
   REQUIRE(paths > 0);
   for (int path = 0; path < paths; ++path) {
     const double R = h * std::array{0.3, 1.0, 3.0}[std::size_t(path) % 3],

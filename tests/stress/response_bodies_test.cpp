@@ -11,7 +11,6 @@
 #include "support/response_bodies.hpp"
 #include "support/walker.hpp"
 
-#include <cstdlib>
 #include <random>
 #include <string>
 
@@ -42,8 +41,7 @@ void try_body(const test::ResponseBody& body, double convergence) {
   ResponseTick<1> finer(fine, {.second_order = false});
   std::vector<double> u(3 * points.size()), before(u.size()), change;
   double force_jump = 0, field_jump = 0, most = 0, most_linear = 0, stiffest = 0;
-  const char* wanted = std::getenv("PALPATE_PATHS");
-  const int paths = wanted != nullptr ? std::atoi(wanted) : 400, steps = 40;
+  const int paths = test::wanted_paths(120, 10000), steps = 40;
   REQUIRE(paths > 0);
   using Both = std::array<ResponseContact<double>, 2>;
   const auto middle = [](const Both& l, const Both& r) {

@@ -6,9 +6,17 @@
 
 #include <palpate/geometry/bvh.hpp>
 
+#include <cstdlib>
 #include <random>
 
 namespace palpate::test {
+
+/// Paths over each body: PALPATE_PATHS in the environment; without it `few` in every run of the tests, `many`
+/// where PALPATE_STRESS is set (tests/run --stress).
+[[nodiscard]] inline int wanted_paths(int few, int many) {
+  if (const char* wanted = std::getenv("PALPATE_PATHS")) return std::atoi(wanted);
+  return std::getenv("PALPATE_STRESS") != nullptr ? many : few;
+}
 
 /// A probe that is kept at a small distance outside; its nearest point of the surface and the direction from
 /// there are continuous over convex edges.

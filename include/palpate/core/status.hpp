@@ -22,6 +22,9 @@ enum class Status : std::uint32_t {
   stress_bounded = 1u << 9,  ///< other regions' beams would have pulled: their stress force is bounded
   coarsened = 1u << 10,      ///< the tool has fewer points than it was given, to keep a budget of time
   unconverged = 1u << 11,    ///< a resolved contact's conditions are not met to ten times their tolerance
+  near_field_only =
+      1u << 12,  ///< a resolved contact where the body's response is no elastic body's (fixed at too few
+                 ///< elements, too thin for them): as on a half-space, until the tool has left
 };
 
 [[nodiscard]] constexpr Status operator|(Status a, Status b) noexcept {

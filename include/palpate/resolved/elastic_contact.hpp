@@ -46,6 +46,7 @@ namespace detail {
 struct NoRegularPart {
   static constexpr bool active = false;
   NoRegularPart(const auto& /*body*/, std::size_t /*capacity*/) {}
+  [[nodiscard]] static constexpr float sunk() noexcept { return 0; }
 };
 /// What a body adds to the half-space's response: `C::RegularPart`, if there is one.
 template <class C>

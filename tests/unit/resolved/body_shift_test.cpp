@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Thin parts of a body bend away from the tool by more than they are thick.
-#include <palpate/geometry/box.hpp>
 #include <palpate/law/friction/coulomb.hpp>
-#include <palpate/resolved/contact_samples.hpp>
 #include <palpate/resolved/detail/body_shift.hpp>
-#include <palpate/resolved/response_compliance.hpp>
-#include <palpate/solver/contact_solver.hpp>
 
 #include <doctest/doctest.h>
 
-#include <support/bowl.hpp>
 #include <support/check.hpp>
 #include <support/no_heap.hpp>
+#include <support/on_block.hpp>
 #include <support/paths.hpp>
-#include <support/response_fields.hpp>
 
 #include <array>
 #include <cmath>
-#include <memory>
 #include <numbers>
 
 using namespace palpate;
@@ -26,28 +20,12 @@ using namespace palpate::test;
 namespace {
 
 using V = Vec3<double>;
-constexpr double E = 1e6, nu = 0.49, R = 2.5e-3, pi = std::numbers::pi;
+constexpr double E = block_E, nu = block_nu, R = 2.5e-3, pi = std::numbers::pi;
 
-/// A box that stands on its fixed base, y = 0, and a ball's cap as tool.
 template <class Friction = Frictionless<double>>
-class Standing {
- public:
-  using Elastic = ElasticContact<double, ResponseCompliance>;
-  using Solver = ContactSolver<Box<double>, Elastic, Friction, ContactPoints<256>>;
-
-  explicit Standing(const V& size, const Friction& friction = {})
-      : solver_({.object = Box<double>({.half = size / 2, .centre = V(0, size.y() / 2, 0)}),
-                 .tool = ToolPoints<double>(contact_samples(TriangleMesh<double>(ball_cap(R, 2e-3)), 3e-4),
-                                            {.contact_area = 1e-5}),
-                 .force = Elastic({.compliance = ResponseCompliance(std::make_shared<const ResponseField>(
-                                       block_field(size, E, nu, 150)))}),
-                 .friction = friction}) {}
-  Solver& operator*() { return solver_; }
-  Solver* operator->() { return &solver_; }
-
- private:
-  Solver solver_;
-};
+auto standing(const V& size, const Friction& friction = {}) {
+  return on_block(size, block_compliance(size, 150), friction, cap_samples(R, 2e-3, 3e-4));
+}
 
 constexpr double thick = 4e-3, at_height = 0.036;
 const V wall(thick, 0.04, 0.04);
@@ -64,7 +42,7 @@ double push(const Wrench<double>& on_tool) { return -on_tool.force.x(); }
 }  // namespace
 
 TEST_CASE("a ball bends a wall by more than its thickness: the dent's and the field's compliance in series") {
-  Standing<> body(wall);
+  auto body = standing(wall);
   constexpr int steps = 500;
   constexpr double deepest = 1.25 * thick, step = deepest / steps, first = deepest / 10;
   const auto dent = [](double F) { return std::pow(F * 3 / 4 * (1 - nu * nu) / E / std::sqrt(R), 2. / 3); };
@@ -73,7 +51,7 @@ TEST_CASE("a ball bends a wall by more than its thickness: the dent's and the fi
   bool all_touch = true;
   for (int i = 1; i <= steps; ++i) {
     const HeapCount heap;
-    const auto felt = body->tick(against_wall(i * step), 1e-3);
+    const auto felt = body.tick(against_wall(i * step), 1e-3);
     const std::size_t allocations = heap.allocations();
     CHECK(allocations == 0);
     const double F = forces[std::size_t(i)] = push(felt.wrench);
@@ -91,37 +69,37 @@ TEST_CASE("a ball bends a wall by more than its thickness: the dent's and the fi
   CHECK(stiffest < 1.5 / bends);  // no jump; by the same, and the dent, it grows to 1.06
   // And back, without friction, as it came; two solves to 1e-4 of the depths, here of the dent. Measured: 3e-5.
   for (int i = steps; i > 0; --i)
-    CHECK(std::abs(push(body->tick(against_wall(i * step), 1e-3).wrench) - forces[std::size_t(i)]) <=
+    CHECK(std::abs(push(body.tick(against_wall(i * step), 1e-3).wrench) - forces[std::size_t(i)]) <=
           0.01 * before);
 }
 
 TEST_CASE("a tool that comes back from a bent wall in one tick still touches it, and feels it a tick later") {
   for (const double back : {0.2e-3, 1e-3, 3e-3}) {
     constexpr double deepest = 1.2 * thick;
-    Standing<> body(wall), slowly(wall);
-    for (int i = 1; i <= 1000; ++i) (void)body->tick(against_wall(deepest * i / 1000), 1e-3);
+    auto body = standing(wall), slowly = standing(wall);
+    for (int i = 1; i <= 1000; ++i) (void)body.tick(against_wall(deepest * i / 1000), 1e-3);
     const double deep = deepest - back;
     double F = 0;
-    for (int i = 1; i <= 1000; ++i) F = push(slowly->tick(against_wall(deep * i / 1000), 1e-3).wrench);
-    const auto at_once = body->tick(against_wall(deep), 1e-3);
+    for (int i = 1; i <= 1000; ++i) F = push(slowly.tick(against_wall(deep * i / 1000), 1e-3).wrench);
+    const auto at_once = body.tick(against_wall(deep), 1e-3);
     CAPTURE(back);
     CHECK(has(at_once.status, Status::contact));
     // With the points that are found where the wall was; measured: -2 %.
     CHECK_RELATIVE(push(at_once.wrench), F, 0.2);
-    CHECK_RELATIVE(push(body->tick(against_wall(deep), 1e-3).wrench), F, 0.02);  // measured: 1e-4
+    CHECK_RELATIVE(push(body.tick(against_wall(deep), 1e-3).wrench), F, 0.02);  // measured: 1e-4
     // Away, nothing is left.
-    CHECK(body->tick(against_wall(-1e-6), 1e-3).wrench.force == V::Zero());
+    CHECK(body.tick(against_wall(-1e-6), 1e-3).wrench.force == V::Zero());
   }
 }
 
 TEST_CASE("friction draws a post's top aside by five widths of the contact: the force grows with the way") {
   const V post(0.02, 0.05, 0.02);
-  Standing<CoulombFriction<double>> body(post, CoulombFriction<double>({.mu_static = 3, .mu_dynamic = 3}));
+  auto body = standing(post, CoulombFriction<double>({.mu_static = 3, .mu_dynamic = 3}));
   constexpr double deep = 5e-4, way = 8e-3;
   Pose<double> X;
   const auto tick = [&](double x, double d) {
     X.translation = V(x, post.y() - d, 0);
-    return -body->tick(X, 1e-3).wrench.force.x();
+    return -body.tick(X, 1e-3).wrench.force.x();
   };
   for (int i = 1; i <= 50; ++i) (void)tick(0, deep * i / 50);
   double at_first = 0, last = 0, before = 0;
@@ -131,7 +109,7 @@ TEST_CASE("friction draws a post's top aside by five widths of the contact: the 
     CHECK(last > before);
     before = last;
   }
-  CHECK(body->contacts()[0].mode == ContactMode::sticking);
+  CHECK(body.contacts()[0].mode == ContactMode::sticking);
   // As the top turns, by 0.24, other points of the ball come in, which hold only what is drawn from then on.
   // Measured: 7 % less.
   CHECK_RELATIVE(last / at_first, 8., 0.08);

@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Two fingers hold a block: each a contact resolved at its own points, with the block's pose in between.
-#include <palpate/geometry/box.hpp>
 #include <palpate/law/friction/coulomb.hpp>
-#include <palpate/resolved/contact_samples.hpp>
-#include <palpate/resolved/response_compliance.hpp>
-#include <palpate/solver/contact_solver.hpp>
 
 #include <doctest/doctest.h>
 
-#include <support/bowl.hpp>
 #include <support/check.hpp>
+#include <support/on_block.hpp>
 #include <support/paths.hpp>
-#include <support/response_fields.hpp>
 
 #include <array>
-#include <memory>
 #include <numbers>
 
 using namespace palpate;
@@ -23,18 +17,13 @@ using namespace palpate::test;
 namespace {
 
 using V = Vec3<double>;
-constexpr double E = 1e6, nu = 0.49, mu = 0.4, R = 8e-3, d = 1e-3, pi = std::numbers::pi;
+constexpr double E = block_E, nu = block_nu, mu = 0.4, R = 8e-3, d = 1e-3, pi = std::numbers::pi;
 const V half(0.02, 0.03, 0.02), middle(0, half.y(), 0);
 
 template <class Compliance>
 auto solver_of(const Compliance& compliance) {
-  using Elastic = ElasticContact<double, Compliance>;
-  return ContactSolver<Box<double>, Elastic, CoulombFriction<double>, ContactPoints<256>>(
-      {.object = Box<double>({.half = half, .centre = middle}),
-       .tool = ToolPoints<double>(contact_samples(TriangleMesh<double>(ball_cap(R, 6e-3)), 8e-4),
-                                  {.contact_area = 1e-4}),
-       .force = Elastic({.compliance = compliance}),
-       .friction = CoulombFriction<double>({.mu_static = mu, .mu_dynamic = mu})});
+  return on_block(2 * half, compliance, CoulombFriction<double>({.mu_static = mu, .mu_dynamic = mu}),
+                  cap_samples(R, 6e-3, 8e-4));
 }
 
 /// Two equal fingers on a block: one solver, a state for each. All that they know of each other is the block's
@@ -137,8 +126,7 @@ TEST_CASE(
 }
 
 TEST_CASE("fingers drag a rubber block, fixed below, up to 2 mu N within 3 %") {
-  const auto field = std::make_shared<const ResponseField>(block_field(2 * half, E, nu, 80));
-  const auto solver = solver_of(ResponseCompliance(field));
+  const auto solver = solver_of(block_compliance(2 * half, 80));
   Grasp grasp(solver);
   (void)grasp.squeeze(d);
   double force = 0;

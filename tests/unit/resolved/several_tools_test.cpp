@@ -1,24 +1,18 @@
 // SPDX-License-Identifier: MIT
 // Several tools on one body, each with a state of its own, that feel each other's loads: against one tool that
 // has the points of all.
-#include <palpate/geometry/box.hpp>
 #include <palpate/law/friction/coulomb.hpp>
 #include <palpate/law/friction/none.hpp>
-#include <palpate/resolved/contact_samples.hpp>
-#include <palpate/resolved/response_compliance.hpp>
-#include <palpate/solver/contact_solver.hpp>
 
 #include <doctest/doctest.h>
 
-#include <support/bowl.hpp>
 #include <support/check.hpp>
 #include <support/no_heap.hpp>
+#include <support/on_block.hpp>
 #include <support/paths.hpp>
-#include <support/response_fields.hpp>
 
 #include <array>
 #include <limits>
-#include <memory>
 #include <numbers>
 #include <random>
 
@@ -28,12 +22,12 @@ using namespace palpate::test;
 namespace {
 
 using V = Vec3<double>;
-constexpr double E = 1e6, nu = 0.49, R = 8e-3;
-const V half(0.02, 0.03, 0.02), middle(0, half.y(), 0);
+constexpr double E = block_E, nu = block_nu, R = 8e-3;
+const V half(0.02, 0.03, 0.02);
 using Loads = FixedVector<SurfaceLoad<double>, 256>;
 using Poses = std::array<Pose<double>, 2>;
 
-SurfaceSamples<double> finger() { return contact_samples(TriangleMesh<double>(ball_cap(R, 6e-3)), 8e-4); }
+SurfaceSamples<double> finger() { return cap_samples(R, 6e-3, 8e-4); }
 
 /// Left and right of the block, `deep` in it.
 Poses fingers(double deep) {
@@ -53,23 +47,7 @@ Poses side_by_side(double deep) {
   return out;
 }
 
-template <class Compliance, class Friction>
-using SolverOf =
-    ContactSolver<Box<double>, ElasticContact<double, Compliance>, Friction, ContactPoints<256, 256>>;
-template <class Compliance, class Friction>
-SolverOf<Compliance, Friction> solver_of(const Compliance& compliance, const Friction& friction,
-                                         const SurfaceSamples<double>& samples) {
-  return SolverOf<Compliance, Friction>(
-      {.object = Box<double>({.half = half, .centre = middle}),
-       .tool = ToolPoints<double>(samples, {.contact_area = 1e-4}),
-       .force = ElasticContact<double, Compliance>({.compliance = compliance}),
-       .friction = friction});
-}
-
-std::shared_ptr<const ResponseField> block() {
-  static const auto field = std::make_shared<const ResponseField>(block_field(2 * half, E, nu, 150));
-  return field;
-}
+ResponseCompliance block() { return block_compliance(2 * half, 150); }
 
 /// Two equal fingers.
 template <class Compliance, class Friction>
@@ -77,7 +55,7 @@ class TwoFingers {
  public:
   TwoFingers(const Compliance& compliance, const Friction& friction,
              const SurfaceSamples<double>& samples = finger())
-      : solver_(solver_of(compliance, friction, samples)),
+      : solver_(on_block(2 * half, compliance, friction, samples)),
         states_{solver_.initial_state(), solver_.initial_state()} {}
 
   /// A tick of each in turn. On the tools.
@@ -115,8 +93,8 @@ class TwoFingers {
   }
 
  private:
-  SolverOf<Compliance, Friction> solver_;
-  std::array<typename SolverOf<Compliance, Friction>::State, 2> states_;
+  OnBlock<Compliance, Friction> solver_;
+  std::array<typename OnBlock<Compliance, Friction>::State, 2> states_;
   Loads loads_;
   std::size_t allocations_ = 0;
 };
@@ -133,7 +111,7 @@ V force_of_one_solve(const Compliance& compliance, const Poses& poses) {
       both.vector_areas.push_back(X.rotation * one.vector_areas[i]);
     }
   }
-  auto solver = solver_of(compliance, Frictionless<double>{}, both);
+  auto solver = on_block(2 * half, compliance, Frictionless<double>{}, both);
   for (int i = 0; i < 5; ++i) (void)solver.tick({}, 1e-3);
   V force = V::Zero();
   for (const auto& point : solver.state().points()) {
@@ -158,7 +136,7 @@ TEST_CASE("two balls side by side feel each other as parts of one tool do") {
 }
 
 TEST_CASE("two fingers that squeeze a rubber block press as parts of one tool do") {
-  const ResponseCompliance body(block());
+  const ResponseCompliance body = block();
   // Finite strain counts from where others have moved the surface, in one tool from the undeformed one: of
   // second order in d, at 1 mm 1.2e-3.
   const double d = 0.5e-3;
@@ -176,7 +154,7 @@ TEST_CASE("two fingers that squeeze a rubber block press as parts of one tool do
 }
 
 TEST_CASE("a finger feels the block that another pushes to it, by more than it is deep in it") {
-  const ResponseCompliance body(block());
+  const ResponseCompliance body = block();
   // Of a ball 3 mm deep in the block, which comes to it by 2 mm and more, and of a foot of 0.08 mm^2.
   const double K = 2 * E / (1 - nu * nu) * (std::sqrt(R * 5e-3) + std::sqrt(8e-8 / std::numbers::pi));
   // The left finger presses by up to 4 mm; the right one is beside the block, or comes to it afterwards.
@@ -243,7 +221,7 @@ TEST_CASE("a finger feels the block that another pushes to it, by more than it i
 }
 
 TEST_CASE("two fingers that lift a block hold the same places of it") {
-  const ResponseCompliance body(block());
+  const ResponseCompliance body = block();
   TwoFingers hands(body, CoulombFriction<double>({.mu_static = 5, .mu_dynamic = 5}));
   constexpr double deep = 2e-3;
   (void)hands.press(deep, 6, fingers);
@@ -261,7 +239,7 @@ TEST_CASE("two fingers that lift a block hold the same places of it") {
 }
 
 TEST_CASE("two fingers on a rubber block get back no more than they gave on closed paths") {
-  const ResponseCompliance body(block());
+  const ResponseCompliance body = block();
   const auto loop = [&](const auto& friction) {
     TwoFingers hands(body, friction);
     double net = 0, exchanged = 0;
@@ -293,7 +271,7 @@ TEST_CASE("two fingers on a rubber block get back no more than they gave on clos
 }
 
 TEST_CASE("two fingers dip in, slide and lift at random: no jump, no heap, the same bits again") {
-  const ResponseCompliance body(block());
+  const ResponseCompliance body = block();
   const auto go = [&](const auto& friction, std::uint32_t seed, double dip, double most) {
     const double K = 2 * E / (1 - nu * nu) * std::sqrt(R * dip);  // of a ball at the deepest
     TwoFingers hands(body, friction);
@@ -367,7 +345,7 @@ TEST_CASE("a ball that sticks is dragged along by what another does") {
 
 TEST_CASE("loads beside: none, too many, not finite, and after an invalid pose") {
   const HalfSpace body({.E = E, .nu = nu});
-  const auto solver = solver_of(body, Frictionless<double>{}, finger());
+  const auto solver = on_block(2 * half, body, Frictionless<double>{}, finger());
   auto state = solver.initial_state(), other = solver.initial_state();
   const Poses at = side_by_side(1e-3);
   const auto alone = solver.evaluate(at[0], 1e-3, state);

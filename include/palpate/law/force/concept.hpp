@@ -63,6 +63,11 @@ concept HasForces = requires(const L& law, const V& depth) {
   { law.forces(depth) } noexcept -> std::same_as<V>;
 };
 
+template <class L>  // optional: of D, at the force F, by how much the body as such is displaced [m], >= 0
+concept HasBodyDisplacement = requires(const L& law, typename L::Scalar force) {
+  { law.body_displacement(force) } noexcept -> std::same_as<typename L::Scalar>;
+};
+
 /// Contact force as a function of displacement. Beyond `max_depth()` force() stays at its maximum and
 /// stiffness() is 0, so that no law ever returns to another branch.
 template <class L>

@@ -79,6 +79,10 @@ class HertzForce {
     // At least 0: the square may be below the smallest number.
     return (std::max)(root * root + p_.compliance * force, S(0));
   }
+  /// What is the body's of the depth at the force F [m]; 0 of a layer on a stiff base.
+  [[nodiscard]] S body_displacement(S force) const noexcept {
+    return (std::max)(p_.compliance, S(0)) * force;
+  }
   /// No limit: infinity.
   [[nodiscard]] S max_depth() const noexcept { return std::numeric_limits<S>::infinity(); }
   [[nodiscard]] const Params& params() const noexcept { return p_; }

@@ -64,7 +64,7 @@ class BodyShift {
     if (!(load > 0)) return forget();
     const Vec3<float> mean = sum_of(sum) / load;
     const float size = has_friction ? mean.norm() : reduce(sizes) / load;
-    if (!(size > 0)) return forget();
+    if (!(size > 0) || !is_finite(size)) return forget();
     const float deviation = std::sqrt((std::max)(reduce(squares) / load - size * size, 0.f));
     const float share = (std::max)(1 - reach * deviation / size, 0.f);
     const Vec3<float> target = share * mean, change = target - v_;
@@ -79,7 +79,7 @@ class BodyShift {
   /// False at the end, where v is 0. At once from 0 a part that is thinner than the tool was deep would be
   /// met from its far side.
   [[nodiscard]] bool come_back(int tries) noexcept {
-    if (v_.isZero(0)) return false;
+    if (tries > most_tries || v_.isZero(0)) return false;
     v_ *= float(most_tries - tries) / float(most_tries + 1 - tries);
     return true;
   }

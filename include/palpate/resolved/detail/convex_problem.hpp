@@ -27,13 +27,17 @@ namespace palpate::detail {
 /// What is left of a solve.
 struct Remainder {
   int iterations = 0;
-  float norm = 0;  ///< of what violates the conditions [m]
+  float norm = 0;         ///< of what violates the conditions [m]
+  bool is_convex = true;  ///< false where A was found not to be positive definite: the result is none
+  /// Whether the result is none; `depths`: their norm, which what a start lacks is hardly more than [m].
+  [[nodiscard]] bool is_astray(float depths) const noexcept { return !is_convex || !(norm <= 10 * depths); }
 };
 
 /// How well a tick has met the conditions of contact.
 struct Residual {
   int iterations = 0;
-  float relative = 0;  ///< norm of what violates them, over the norm of the depths
+  float relative = 0;            ///< norm of what violates them, over the norm of the depths
+  bool near_field_only = false;  ///< the body's regular part is left out: Status::near_field_only
 };
 
 /// Loads P on the body and displacements u, by which a solve ends, sized at set-up.
@@ -88,7 +92,8 @@ template <class Apply>
     float py = 0;
     for (std::size_t i = 0; i < n; ++i) py += p[i] * y[i];
     if (!(py > 0) || !(rp > 0)) {  // rounding has used up the direction
-      if (restart) return result;
+      result.is_convex = !(py < 0);
+      if (restart || !result.is_convex) return result;
       restart = true;
       continue;
     }
@@ -126,6 +131,25 @@ struct FrictionLists : LoadLists {
     for (auto* list : {&held, &per_mu}) list->resize(size);
   }
 };
+
+/// After a solve without friction: loads and displacements, of q and r = m.u - d.
+inline void complete(std::size_t n, const VectorList& m, const float* d, const PressureLists& from,
+                     LoadLists& to) noexcept {
+  using V = VectorList::V;
+  for (std::size_t i = 0; i < n; i += V::size()) {
+    to.load.store(i, V(&from.q[i]) * m.load(i));
+    to.u.store(i, (V(&from.r[i]) + V(d + i)) * m.load(i));
+  }
+}
+/// With friction q and r, of those.
+inline void complete(std::size_t n, const VectorList& m, const float* d, PressureLists& to,
+                     const FrictionLists& from) noexcept {
+  using V = VectorList::V;
+  for (std::size_t i = 0; i < n; i += V::size()) {
+    (max)(dot(m.load(i), from.load.load(i)), V(0.f)).copy_to(&to.q[i]);
+    (dot(m.load(i), from.u.load(i)) - V(d + i)).copy_to(&to.r[i]);
+  }
+}
 
 /// A load of normal part q >= 0 along m and tractions t, these within mu q.
 template <class V>
@@ -194,7 +218,9 @@ template <class Apply, class Coefficient>
     }
     lists.mu = coefficient(reduce(total));
     const float moved = reduce(Pu);
-    if (moved > 0) lists.step = reduce(PP) / moved;
+    result.is_convex = !(moved < 0);
+    lists.step = moved > 0 ? reduce(PP) / moved : result.is_convex ? lists.step : 0;
+    if (!result.is_convex) return result;
   }
 }
 

@@ -67,6 +67,7 @@ class PointSystem {
     depth[size_] = deep;
     area_[size_++] = area;
   }
+  [[nodiscard]] bool has_friction() const noexcept { return has_friction_; }
   [[nodiscard]] const VectorList& directions() const noexcept { return m_; }  ///< of pressing
   [[nodiscard]] const VectorList& normals() const noexcept { return n_; }     ///< inward
   [[nodiscard]] const VectorList& positions() const noexcept { return x_at_; }
@@ -91,6 +92,10 @@ class PointSystem {
     for (std::size_t j = 0; j < size_; ++j) to = b_ != 0 ? column<true>(j, to) : column<false>(j, to);
   }
 
+  /// All points are less deep by w [m].
+  void sink(float w) noexcept {
+    for (std::size_t i = 0; i < size_; ++i) depth[i] -= w;
+  }
   /// u = K q, both along the directions of pressing. Precondition: no friction; zeros beyond size().
   void displace(const float* q, float* u) noexcept {
     const float cell = own_cell * (1 + b_);

@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace palpate::detail {
@@ -110,8 +111,32 @@ class RegularPart {
   /// False where nodes were left out.
   [[nodiscard]] bool has_all() const noexcept { return has_all_; }
 
+  /// After a tick's solve: what the loads q have moved the contact by.
+  void keep(const PointSystem& system, const float* q) noexcept {
+    if (is_left_out_) return;
+    V loads{}, sunks{};
+    for (std::size_t i = 0; i < size_; i += V::size()) {
+      const V qi(q + i);
+      loads += qi, sunks += qi * dot(system.directions().load(i), w_.load(i));
+    }
+    const float load = reduce(loads);
+    sunk_ = load > 0 ? reduce(sunks) / load : 0;
+  }
+  /// Until take_in() loads have no response: K + W was not positive definite, as it is not where a body is
+  /// fixed at few elements, or too thin for them. The contact stays as deep as in the last tick, so that its
+  /// force goes on. False if W was left out before.
+  bool leave_out() noexcept {
+    begin_response();
+    return !std::exchange(is_left_out_, true);
+  }
+  void take_in() noexcept { is_left_out_ = false, sunk_ = 0; }
+  [[nodiscard]] bool is_left_out() const noexcept { return is_left_out_; }
+  /// By what the contact is moved without its loads [m].
+  [[nodiscard]] float sunk() const noexcept { return is_left_out_ ? sunk_ : 0; }
+
   /// u += w along the directions of pressing, by loads q along them.
   void add(const PointSystem& system, const float* q, float* u) noexcept {
+    if (is_left_out_) return;
     gather([&](std::size_t i) { return Vec3<float>(q[i] * system.direction(i)); });
     for (std::size_t i = 0; i < size_; ++i) u[i] += system.direction(i).dot(of(i));
   }
@@ -122,13 +147,14 @@ class RegularPart {
   }
   /// u += w by loads P, which come to those of response().
   void add(const PointSystem&, const VectorList& P, VectorList& u) noexcept {
+    if (is_left_out_) return;
     extend(P);
     for (std::size_t i = 0; i < size_; i += V::size()) u.store(i, u.load(i) + w_step_.load(i));
   }
   /// Of loads P alone.
   void respond(const VectorList& P) noexcept {
     begin_response();
-    extend(P);
+    if (!is_left_out_) extend(P);
   }
   [[nodiscard]] const VectorList& response() const noexcept { return w_; }  ///< w at the points
   /// The nodes' displacements by what other tools push with.
@@ -141,12 +167,15 @@ class RegularPart {
   [[nodiscard]] Vec3<float> beside(std::size_t i) const noexcept { return at(weights_[i], u_beside_); }
   /// Gradient along the surface of n.w, n the surface's own normal, w of response() and of what others' loads
   /// do (`given`): by regression over the pressures q. One gradient for all is continuous in the pose; the
-  /// load mesh's own jumps from triangle to triangle.
+  /// load mesh's own jumps from triangle to triangle. With friction w along m alone: across it the surface
+  /// has been carried along, and points are put over it there (carried_surface.hpp).
   template <class Given>
   [[nodiscard]] Vec3<float> slope(const PointSystem& system, const float* q,
                                   const Given& given) const noexcept {
     const auto w_at = [&](std::size_t i) PALPATE_INLINE_LAMBDA {
-      return dot(system.normals().load(i), w_.load(i) + given.load(i));
+      const SimdVec3<V> n = system.normals().load(i), m = system.directions().load(i),
+                        w = w_.load(i) + given.load(i);
+      return system.has_friction() ? dot(n, m) * dot(m, w) : dot(n, w);
     };
     V loads{}, ws{}, areas{};
     SimdVec3<V> xs{}, ms{};
@@ -180,7 +209,7 @@ class RegularPart {
                                 const Vec3<float>& m) noexcept {
     Weights weights;
     place(body.field(), x, triangle, weights, false);
-    const float w = m.dot(at(weights, u_of_all_));
+    const float w = sunk() + m.dot(at(weights, u_of_all_));
     return beside_.empty() ? w : w + m.dot(at(weights, u_beside_));
   }
 
@@ -316,7 +345,8 @@ class RegularPart {
   AlignedList<float> matrix_;               // by column
   std::size_t size_ = 0, stride_ = 0;
   std::uint32_t tick_ = 2;
-  bool changed_ = true, has_all_ = true;
+  bool changed_ = true, has_all_ = true, is_left_out_ = false;
+  float sunk_ = 0;
 };
 
 }  // namespace palpate::detail

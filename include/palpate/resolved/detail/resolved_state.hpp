@@ -153,8 +153,7 @@ class ResolvedState {
   [[nodiscard]] bool solve(const Force& force, const Friction& friction, const ToolPoints<S>& tool,
                            const Pose<S>& X) noexcept {
     const bool first = contacts_.empty();
-    contacts_.clear();
-    residual_ = {};
+    contacts_.clear(), residual_ = {};
     const Pose<S> before = std::exchange(pose_, X);
     if (touching_.empty()) {
       forget();
@@ -206,7 +205,7 @@ class ResolvedState {
   void forget() noexcept {
     slides_ = false, strength_ = {};
     if constexpr (has_friction) result_.step = 0, carried_.clear(origin_);
-    if constexpr (Strain::active) strain_.forget();
+    if constexpr (Strain::active) strain_.forget(), regular_.take_in();
     shift_.forget(), beside_.drop();
   }
   [[nodiscard]] Point& point(std::size_t i) noexcept { return points_[touching_[inside_[i]].point]; }
@@ -220,7 +219,7 @@ class ResolvedState {
     for (std::size_t i = 0; i < size(); ++i) {
       if constexpr (Shift::active)
         system_.depth[i] += touching_[inside_[i]].shifted * system_.direction(i).dot(shift_.v());
-      system_.depth[i] *= strain_.factor();
+      system_.depth[i] = strain_.factor() * system_.depth[i] - regular_.sunk();
       last_.set(i, point(i));
       if constexpr (has_friction && Strain::active) outward_.set(i, touching_[inside_[i]].outward);
     }
@@ -248,18 +247,15 @@ class ResolvedState {
           system_.flexible_step(), tolerance, iterations,
           [this](const VectorList& P, VectorList& u) noexcept { displace(P, u); },
           [&](float q) noexcept { return coefficient(friction, q); });
-    for (std::size_t i = 0; i < system_.stride(); i += V::size()) {
-      const SimdVec3<V> m = system_.directions().load(i);
-      const V depth(&system_.depth[i]);
-      if constexpr (!has_friction) {
-        result_.load.store(i, V(&pressure_.q[i]) * m);
-        result_.u.store(i, (V(&pressure_.r[i]) + depth) * m);
-      } else {
-        (max)(dot(m, result_.load.load(i)), V(0.f)).copy_to(&pressure_.q[i]);
-        (dot(m, result_.u.load(i)) - depth).copy_to(&pressure_.r[i]);
+    if constexpr (RegularPart::active)
+      if (left.is_astray(tolerance / static_cast<float>(force.params().tolerance)) && regular_.leave_out()) {
+        system_.sink(regular_.sunk());
+        begin_loads(0.f);
+        return solve_inside(force, friction, tolerance);
       }
-    }
+    complete(system_.stride(), system_.directions(), system_.depth.data(), pressure_, result_);
     if constexpr (!has_friction && RegularPart::active) regular_.respond(result_.load);
+    if constexpr (RegularPart::active) residual_.near_field_only = regular_.is_left_out();
     residual_.iterations += left.iterations;
     residual_.relative = left.norm * static_cast<float>(force.params().tolerance) / tolerance;
   }
@@ -335,11 +331,15 @@ class ResolvedState {
   }
   void finish(const ToolPoints<S>& tool, [[maybe_unused]] float moved) noexcept {
     SimdVec3<V> slope{};
-    if constexpr (RegularPart::active) slope = each<V>(regular_.slope(system_, pressure_.q.data(), beside_));
+    if constexpr (RegularPart::active) {
+      slope = each<V>(regular_.slope(system_, pressure_.q.data(), beside_));
+      regular_.keep(system_, pressure_.q.data());
+    }
     reaction_.measure(system_, pressure_.q.data(), result_, slope, beside_);
     const Vec3<float> v = shift_.v();
     if constexpr (Shift::active)
-      shift_.measure(system_, pressure_.q.data(), regular_.response(), origin_, moved);
+      if (!regular_.is_left_out())
+        shift_.measure(system_, pressure_.q.data(), regular_.response(), origin_, moved);
     if constexpr (has_friction) carried_.clear(origin_);
     for (std::size_t i = 0; i < size(); ++i) {
       const Touching& at = touching_[inside_[i]];

@@ -109,12 +109,21 @@ class Collector<SinglePoint, S, Coupling> {
     state.update(touching);
     if (!touching) return Status::ok;
     const auto& law = detail::law_at(force, x);
+    return detail::depth_status(object, force, in.depth) |
+           add<Force>(object, tool, law, X, x, in, law.force(in.depth), state, sums);
+  }
+
+ protected:
+  /// The point at x [m] with the force f [N] of `law`, that of `Force` there.
+  template <ForceModel Force, ContactSurface Object>
+  PALPATE_INLINE static Status add(const Object& object, const PointTool<S>& tool, const auto& law,
+                                   const Pose<S>& X, const Vec3<S>& x, const Penetration<S>& in, S f,
+                                   State& state, detail::TickSums<Sum<Force>, 1>& sums) noexcept {
     const Vec3<S> arm = X.rotation * (tool.tip - tool.centre_of_mass);
     Sum<Force>& sum = detail::begin<Force>(sums)[0];
-    sum.add(x, arm, in.gradient, in.depth, law.force(in.depth), S(0));
+    sum.add(x, arm, in.gradient, in.depth, f, S(0));
     if constexpr (ForceMap<Force>) sum.add(arm, law.configurational_force(in.depth));
-    return Status::contact | detail::depth_status(object, force, in.depth) |
-           state.keep_side(X, detail::shallow(object), sum);
+    return Status::contact | state.keep_side(X, detail::shallow(object), sum);
   }
 };
 

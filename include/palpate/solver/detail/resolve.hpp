@@ -10,6 +10,7 @@
 #include <palpate/resolved/detail/tool_surface.hpp>
 #include <palpate/resolved/elastic_contact.hpp>
 #include <palpate/solver/detail/gather.hpp>
+#include <palpate/solver/detail/point_on_body.hpp>
 #include <palpate/solver/tick_result.hpp>
 
 namespace palpate::detail {
@@ -56,6 +57,7 @@ class ResolvedCollector {
     if (deepest > object.reach()) result.status |= Status::beyond_reach;
     if (state.residual().relative > S(10) * static_cast<S>(force.params().tolerance))
       result.status |= Status::unconverged;
+    if (state.residual().near_field_only) result.status |= Status::near_field_only;
     if (!was_touching) ++state.id;
     contacts.push_back(summed(tool, X, Acting{}, state, deepest + shift, result.wrench));
   }
@@ -105,6 +107,11 @@ class ResolvedCollector {
 template <Topology Contacts, Real S, class Coupling, class Force, bool has_friction>
 struct CollectorOf {
   using type = Collector<Contacts, S, Coupling>;
+};
+template <Real S, class Coupling, ForceModel Force, bool has_friction>
+  requires HasBodyDisplacement<typename LawOf<Force>::Law>
+struct CollectorOf<SinglePoint, S, Coupling, Force, has_friction> {
+  using type = PointOnBody<S, Coupling>;
 };
 template <ResolvedTopology Contacts, Real S, class Coupling, class Force, bool has_friction>
 struct CollectorOf<Contacts, S, Coupling, Force, has_friction> {

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// A body that is fixed at next to nothing, so that its response is no elastic body's: bounded, and said so.
+#include <palpate/geometry/box.hpp>
+#include <palpate/law/friction/coulomb.hpp>
+#include <palpate/resolved/contact_samples.hpp>
+#include <palpate/resolved/detail/convex_problem.hpp>
+#include <palpate/resolved/response_compliance.hpp>
+#include <palpate/solver/contact_solver.hpp>
+
+#include <doctest/doctest.h>
+
+#include <support/bowl.hpp>
+#include <support/check.hpp>
+#include <support/response_fields.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+using namespace palpate;
+using namespace palpate::test;
+
+namespace {
+using V = Vec3<double>;
+
+/// Displacement by a point's own load; the second is drawn to what presses on it.
+constexpr float response[2] = {1, -2};
+}  // namespace
+
+TEST_CASE("a response that is not positive definite is seen, without friction and with it") {
+  constexpr std::size_t stride = 16;
+  AlignedList<float> d;
+  d.resize(stride);
+  d[0] = d[1] = 1e-3f;
+  detail::PressureLists pressures;
+  pressures.resize(stride);
+  const auto apply = [](const float* q, float* u) {
+    for (std::size_t i = 0; i < 2; ++i) u[i] = response[i] * q[i];
+  };
+  CHECK_FALSE(detail::solve_pressures(2, pressures, d.data(), 1e-7f, 50, apply).is_convex);
+
+  detail::FrictionLists loads;
+  loads.resize(stride);
+  detail::VectorList m;
+  m.resize(stride);
+  for (std::size_t i = 0; i < 2; ++i) m.set(i, Vec3<float>::UnitY()), loads.per_mu[i] = 1;
+  const auto apply_all = [](const detail::VectorList& P, detail::VectorList& u) {
+    for (std::size_t i = 0; i < 2; ++i) u.set(i, response[i] * P[i]);
+  };
+  const auto mu = [](float) { return 0.3f; };
+  CHECK_FALSE(detail::solve_loads(2, loads, m, d.data(), 1, 1, 1e-7f, 50, apply_all, mu).is_convex);
+}
+
+TEST_CASE("a plate that stands on a corner: no force beyond a half-space's, wherever it is pressed") {
+  constexpr double E = 1e5, nu = 0.49, R = 6e-3, deep = 2e-3;
+  const V size(0.1, 0.1, 0.005);
+  MeshData<double> mesh = box_mesh(size, 20);
+  const auto field = std::make_shared<const ResponseField>(
+      mesh, [](const V& p) { return p.y() <= 1e-3 && p.x() <= 0.0126; },
+      ResponseField::Params{.E = E, .nu = nu, .mesh = {.vertices = 100}, .threads = 1});
+  using Elastic = ElasticContact<double, ResponseCompliance>;
+  ContactSolver<Box<double>, Elastic, CoulombFriction<double>, ContactPoints<128>> solver(
+      {.object = Box<double>({.half = size / 2, .centre = size / 2}),
+       .tool = ToolPoints<double>(contact_samples(TriangleMesh<double>(ball_cap(R, 5e-3)), 8e-4),
+                                  {.contact_area = 1e-4}),
+       .force = Elastic({.compliance = ResponseCompliance(field)}),
+       .friction = CoulombFriction<double>({.mu_static = 0.3, .mu_dynamic = 0.3})});
+  const double hertz = 4. / 3 * E / (1 - nu * nu) * std::sqrt(R) * std::pow(deep, 1.5);
+  bool finite = true, said = false;
+  double largest = 0, work = 0, spent = 0;
+  for (int place = 0; place < 25; ++place) {
+    Pose<double> X;
+    X.rotation = Eigen::Quaterniond::FromTwoVectors(V::UnitY(), V::UnitZ()).toRotationMatrix();
+    solver.reset();
+    V before = V::Zero();
+    for (int i = 0; i <= 400; ++i) {
+      const V x(0.01 + 0.02 * (place % 5), 0.01 + 0.02 * (place / 5),
+                size.z() - deep * (1 - std::abs(i - 200) / 200.));
+      const auto felt = solver.tick({X.rotation, x}, 1e-3);
+      const V force = felt.wrench.force;
+      finite &= is_finite(force) && is_finite(felt.wrench.torque);
+      largest = (std::max)(largest, force.norm());
+      said |= has(felt.status, Status::near_field_only);
+      if (i > 0) {
+        const double done = (force + before).z() / 2 * (i <= 200 ? -1 : 1) * deep / 200;
+        work += done, spent += std::abs(done);
+      }
+      before = force;
+    }
+  }
+  CHECK(finite);
+  CHECK(largest <= hertz);  // measured: 0.95 of it
+  CHECK(said);
+  CHECK(work <= 0);
+}
