@@ -200,7 +200,7 @@ TEST_CASE("a flat face that slides over a convex body takes mu N, though it carr
   V force;
   for (int i = 1; i <= 200; ++i) force = solver.tick(at(0, height, 3e-5 * i), 1e-3).wrench.force;
   REQUIRE(solver.contacts()[0].mode == ContactMode::sliding);
-  // Half of a face's edge is beyond a slope of 3/4, where finite strain's limit is 1.4 mu. Measured: 7 %; with
-  // what the surface is carried along over the body's curvature in the gradient, 50 %.
+  // Finite strain's limit is above mu where the face's normal is not m (finite_strain.hpp). Measured: 7 %;
+  // with w across m in the gradient of the regular part 50 %.
   CHECK_RELATIVE(-force.z() / force.y(), mu, 0.1);
 }

@@ -38,7 +38,7 @@ TEST_CASE("a point that bends a thin plate away is pushed out the way it came, w
     const double depth = 10e-3 * i / 200;  // the plate is 6 mm thick
     const auto force = felt_at(solver, 3e-3 - depth).force;
     CAPTURE(depth);
-    CHECK_RELATIVE(force.y(), soft.force(depth), 1e-12);
+    CHECK_RELATIVE(force.y(), soft.force(depth), 1e-12);  // rounding of w against D
     CHECK(force.x() == 0);
   }
 }
@@ -69,7 +69,7 @@ TEST_CASE("a point that comes back in a tick by more than it was deep in the ben
 TEST_CASE("a closed path round a bent body takes no work") {
   const Ellipsoid<double> body({.axes = V(0.03, 0.02, 0.012)});
   auto solver = make_solver(GrownSurface(body, 0.005), point, soft);
-  // Down on the top by 6 mm, round over a slope and back: the second round, when w has settled to the first.
+  // Round a path 4 to 8 mm deep beside the top: the second round, which begins with the w that it ends with.
   const auto round = [&](int ticks) {
     double work = 0, all = 0;
     V last = V::Zero(), force = V::Zero();
@@ -88,7 +88,8 @@ TEST_CASE("a closed path round a bent body takes no work") {
   const double coarse = round(500), fine = round(1000);
   CAPTURE(coarse);
   CAPTURE(fine);
-  CHECK(std::abs(coarse) < 1e-3);
+  CHECK(std::abs(coarse) <
+        1e-3);  // w lags by what its turns leave. Measured: -6.1e-4; with half the step -3.0e-4
   CHECK(fine <= 0);
 }
 
@@ -101,5 +102,6 @@ TEST_CASE("at rest the same force stands from the tick on in which the displacem
   CHECK(before == now);
   auto other = solver;
   other.mutable_object() = GrownSurface(body, 0.005);  // worked out anew
+  // w is within 1e-6 of itself; the force changes in proportion.
   CHECK((other.tick(X).wrench.force - now).norm() < 1e-3 * now.norm());
 }
