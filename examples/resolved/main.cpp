@@ -17,7 +17,7 @@ int main() {
   using Surface = SampledSurface<SharedSurface<MeshSurface<double>>>;
   using Elastic = ElasticContact<double, ResponseCompliance>;
   const ElasticBody body(read_mesh("liver.obj", {.scale = 0.03}),  // metres per unit of the file
-                         {.E = 20e3, .nu = 0.49, .fixed = below(0.01), .vertices = 300});  // Pa, -, m
+                         {.E = 20e3, .nu = 0.49, .fixed = below(0.05), .vertices = 300});  // Pa, -, m
   const TriangleMesh<double> jaw(read_mesh("jaw.obj", {.scale = 1e-3}));
   auto solver =
       make_solver(Surface(SharedSurface(body.surface()), {.spacing = 2e-3}),                 // m

@@ -8,7 +8,7 @@
 
 int main() {
   const auto mesh = palpate::read_mesh("liver.obj", {.scale = 0.03});  // metres per unit of the file
-  const palpate::ElasticBody body(mesh, {.E = 20e3, .nu = 0.49, .fixed = palpate::below(0.01)});  // Pa, -, m
+  const palpate::ElasticBody body(mesh, {.E = 20e3, .nu = 0.49, .fixed = palpate::below(0.05)});  // Pa, -, m
   palpate::Touch touch(body, palpate::ball(5e-3),                                                 // m
                        palpate::CoulombFriction<double>({.mu_static = 0.4, .mu_dynamic = 0.3}));
   std::vector<float> positions(3 * mesh.vertices.size()), normals(positions.size());

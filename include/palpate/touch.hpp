@@ -3,7 +3,7 @@
 
 /// @file The short way in: a body, a tool, a friction law; force for the hand, shape for the eye.
 ///
-///     const palpate::ElasticBody body(mesh, {.E = 20e3, .nu = 0.49, .fixed = palpate::below(0.01)});
+///     const palpate::ElasticBody body(mesh, {.E = 20e3, .nu = 0.49, .fixed = palpate::below(0.05)});
 ///     palpate::Touch touch(body, palpate::ball(5e-3), palpate::CoulombFriction<double>({...}));
 ///     const auto felt = touch.tick(pose, dt);  // servo thread
 ///     touch.draw(buffer);                      // render thread

@@ -57,9 +57,8 @@ class ResponseField {
     unsigned threads = 2;                       ///< at set-up only; see parallel.hpp for hosts without
     std::function<void(double)> progress = {};  ///< called in the calling thread with what is done, 0 to 1
   };
-  /// Fields per solved node of the load mesh: unit forces along x, y, z; unit radial force dipole; unit
-  /// bending couples along its two tangents; unit torsional couple about its inward normal.
-  static constexpr std::size_t loads = InfluenceFunctions::loads;
+  /// Fields per solved node of the load mesh, see InfluenceFunctions.
+  static constexpr std::size_t loads = InfluenceFunctions::loads, sharpened = InfluenceFunctions::sharpened;
 
   /// `fixed` is true where the object is fixed; the mesh is cut along its boundary.
   template <Real S>
@@ -98,8 +97,8 @@ class ResponseField {
   [[nodiscard]] static constexpr std::size_t padded(std::size_t vertices) noexcept {
     return (vertices + 7) / 8 * 8;
   }
-  /// mu w of load l of solved node k: x at every vertex, y and z `stride()` further each [1/m]; l >= 3:
-  /// [1/m^2].
+  /// mu w of load l of solved node k: x at every vertex, y and z `stride()` further each [1/m]; of dipole and
+  /// couples [1/m^2].
   [[nodiscard]] const float* influence(std::size_t k, std::size_t l) const noexcept {
     return functions()(k, l);
   }

@@ -102,6 +102,40 @@ TEST_CASE("gradients along the surface: of a linear function exactly, at every n
   }
 }
 
+TEST_CASE("sharpened loads: a quadratic's mean over a flat face, by linear interpolation between the nodes") {
+  const ElementMesh solve = element_mesh(test::box_mesh(V(0.1, 0.02, 0.1), 8), 1e-6, 400);
+  const LoadPositions places(solve);
+  const LoadMesh touch = places.load_mesh();
+  for (const V& by : {V(1, 0, 0), V(0, 0, 1), V(1, 0, 1), V(0.5, 0, -1)}) {
+    const auto h = [&by](const V& x) { return by.x() * x.x() * x.x() + by.z() * x.z() * x.z(); };
+    double linear = 0, sharpened = 0, right = 0;
+    for (const auto& t : touch.triangles()) {
+      std::array<V, 3> x;
+      double missing = 0;
+      bool known = true;
+      for (std::size_t c = 0; c < 3; ++c) {
+        x[c] = touch.nodes()[t[c]].source;
+        if (t[c] >= places.solved_or_fixed() || places.sharpening(t[c]).empty()) {
+          known = false;
+          break;
+        }
+        for (const auto& [node, weight] : places.sharpening(t[c]))
+          missing += weight * h(touch.nodes()[node].source) / 3;
+      }
+      if (!known || touch.nodes()[t[0]].normal.y() < 0.99) continue;
+      const double area = 0.5 * (x[1] - x[0]).cross(x[2] - x[0]).norm(),
+                   mean = (h(x[0]) + h(x[1]) + h(x[2])) / 3;
+      linear += area * mean;
+      sharpened += area * (mean + missing);
+      for (std::size_t c = 0; c < 3; ++c) right += area * h(0.5 * (x[c] + x[(c + 1) % 3])) / 3;
+    }
+    INFO("by ", by.transpose(), ": of linear interpolation's error is left ",
+         (sharpened - right) / (linear - right));
+    REQUIRE(linear != right);
+    CHECK(std::abs(sharpened - right) < 0.3 * std::abs(linear - right));
+  }
+}
+
 TEST_CASE("next to an edge a contact between two nodes is as right as at one") {
   Cube coarse(120), fine(400);
   double worst = 0, worst_force = 0;

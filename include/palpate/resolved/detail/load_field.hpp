@@ -109,12 +109,16 @@ class LoadField {
   void add_up(std::span<const SurfaceLoad<S>> loads) noexcept {
     const auto n = static_cast<Eigen::Index>(field_->stride());
     place(loads);
+    using Row = Eigen::Map<const Eigen::ArrayXf>;
+    const auto row = [&](std::uint32_t node, std::size_t l) {
+      return Row(field_->influence(node, l), 3 * n);
+    };
     Eigen::Map<Eigen::ArrayXf> total(total_.data(), 3 * n);
     total.setZero();
     for (const std::uint32_t node : used_)
       for (std::size_t l = 0; l < 3; ++l) {
         float& f = force_[3 * node + l];
-        if (f != 0) total += f * Eigen::Map<const Eigen::ArrayXf>(field_->influence(node, l), 3 * n);
+        if (f != 0) total += 0.5f * f * (row(node, l) + row(node, ResponseField::sharpened + l));
         f = 0;
       }
     near_at_vertices(*field_, drawn_.near, near_.data());

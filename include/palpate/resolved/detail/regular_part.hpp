@@ -273,15 +273,16 @@ class RegularPart {
     }
     return index_[slot];
   }
-  // 4 pi mu w between a node and all that are kept: by reciprocity the mean of both ways.
+  // 4 pi mu w between a node and all that are kept, sharpened at both (InfluenceFunctions): by reciprocity
+  // the mean of both ways.
   void read(const ResponseField& field, std::size_t k) noexcept {
     changed_ = true;
     for (std::size_t l = 0; l < max_nodes; ++l) {
       if (tick_of_[l] == 0) continue;
       Mat3<double> kl, lk;
       for (std::size_t c = 0; c < 3; ++c) {
-        kl.col(Eigen::Index(c)) = field.at(node_[k], node_[l], c);
-        lk.col(Eigen::Index(c)) = field.at(node_[l], node_[k], c);
+        kl.col(Eigen::Index(c)) = field.at(node_[k], node_[l], ResponseField::sharpened + c);
+        lk.col(Eigen::Index(c)) = field.at(node_[l], node_[k], ResponseField::sharpened + c);
       }
       const Mat3<float> w = (2 * std::numbers::pi * (kl + lk.transpose())).cast<float>();
       kept(k, l) = w;

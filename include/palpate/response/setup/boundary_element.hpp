@@ -27,27 +27,6 @@ namespace detail {
 
 using Matrix = Eigen::MatrixXd;
 
-/// Quadratic triangle of the boundary element mesh: three corners, three middles of edges.
-struct Element {
-  Vec3d corner[3], middle[3];
-  Vec3d centre;
-  double edge;  ///< longest [m]
-  [[nodiscard]] Vec3d at(const Vec3d& l) const noexcept {
-    Vec3d x = Vec3d::Zero();
-    for (int c = 0; c < 3; ++c)
-      x += l[c] * (2 * l[c] - 1) * corner[c] + 4 * l[c] * l[(c + 1) % 3] * middle[c];
-    return x;
-  }
-  /// Area vector: outward normal times 2 x area of the flat triangle, varying over a curved one.
-  [[nodiscard]] Vec3d normal(const Vec3d& l) const noexcept {
-    Vec3d d[3];
-    for (int c = 0; c < 3; ++c)
-      d[c] = (4 * l[c] - 1) * corner[c] +
-             4 * (l[(c + 1) % 3] * middle[c] + l[(c + 2) % 3] * middle[(c + 2) % 3]);
-    return (d[1] - d[0]).cross(d[2] - d[0]);
-  }
-};
-
 struct ElementPoint {
   Vec3d x, normal;  ///< position; outward normal times the point's share of area [m], [m^2]
   Vec3d weight;     ///< barycentric
@@ -63,13 +42,16 @@ void element_points(const Element& e, const Rule& rule, std::vector<ElementPoint
 }
 
 /// Points on the element crowded towards its position nearest to `apex` (barycentric): the triangle is cut
-/// there in three.
+/// there in three. `distance`: of a singularity from the apex, 0 if it lies there [m].
 template <std::size_t N>
-void polar_points(const Element& e, const Vec3d& apex, std::vector<ElementPoint>& out) {
+void polar_points(const Element& e, const Vec3d& apex, std::vector<ElementPoint>& out, double distance = 0) {
   for (int c = 0; c < 3; ++c) {
     const double share = apex[c];
     if (share < setup::min_share) continue;
-    element_points(e, duffy_rule<N>(apex, Vec3d::Unit((c + 1) % 3), Vec3d::Unit((c + 2) % 3), share), out);
+    const int b = (c + 1) % 3, d = (c + 2) % 3;
+    const Vec3d x = e.at(apex);
+    const double size = 0.5 * ((e.corner[b] - x).norm() + (e.corner[d] - x).norm());
+    element_points(e, duffy_rule<N>(apex, Vec3d::Unit(b), Vec3d::Unit(d), share, distance / size), out);
   }
 }
 }  // namespace detail
@@ -81,16 +63,7 @@ class BoundaryElements {
       : mesh_(std::move(mesh)), mid_edge_fit_(mesh_), kelvin_(nu), threads_(threads) {
     if (!(nu >= 0 && nu <= 0.5)) fail("BoundaryElements", "nu must be in [0, 1/2]", nu);
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-      detail::Element e;
-      double edge = 0;
-      for (std::size_t c = 0; c < 3; ++c) {
-        e.corner[c] = mesh_.vertices[mesh_.triangles[t][c]];
-        e.middle[c] = mesh_.middle[t][c];
-      }
-      for (int c = 0; c < 3; ++c) edge = (std::max)(edge, (e.corner[c] - e.corner[(c + 1) % 3]).norm());
-      e.edge = edge;
-      e.centre = e.at(Vec3<double>::Constant(1.0 / 3));
-      elements_.push_back(e);
+      const detail::Element& e = elements_.emplace_back(mesh_, t);
       detail::element_points(e, radon_rule(), points7_);
       detail::element_points(e, three_point_rule(), points3_);
     }

@@ -5,7 +5,9 @@
 
 #include <palpate/core/vector.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -36,6 +38,40 @@ struct ElementMesh {
   std::vector<std::uint8_t> fixed_vertex, fixed_triangle;
   double length = 0;  ///< edge length away from the rim
 };
+
+namespace detail {
+
+/// Quadratic triangle of the boundary element mesh: three corners, three middles of edges.
+struct Element {
+  Vec3<double> corner[3], middle[3];
+  Vec3<double> centre;
+  double edge = 0;  ///< longest [m]
+
+  Element(const ElementMesh& mesh, std::size_t t) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      corner[c] = mesh.vertices[mesh.triangles[t][c]];
+      middle[c] = mesh.middle[t][c];
+    }
+    for (int c = 0; c < 3; ++c) edge = (std::max)(edge, (corner[c] - corner[(c + 1) % 3]).norm());
+    centre = at(Vec3<double>::Constant(1.0 / 3));
+  }
+  [[nodiscard]] Vec3<double> at(const Vec3<double>& l) const noexcept {
+    Vec3<double> x = Vec3<double>::Zero();
+    for (int c = 0; c < 3; ++c)
+      x += l[c] * (2 * l[c] - 1) * corner[c] + 4 * l[c] * l[(c + 1) % 3] * middle[c];
+    return x;
+  }
+  /// Area vector: outward normal times 2 x area of the flat triangle, varying over a curved one.
+  [[nodiscard]] Vec3<double> normal(const Vec3<double>& l) const noexcept {
+    Vec3<double> d[3];
+    for (int c = 0; c < 3; ++c)
+      d[c] = (4 * l[c] - 1) * corner[c] +
+             4 * (l[(c + 1) % 3] * middle[c] + l[(c + 2) % 3] * middle[(c + 2) % 3]);
+    return (d[1] - d[0]).cross(d[2] - d[0]);
+  }
+};
+
+}  // namespace detail
 
 /// True where the elastic object is fixed. Called with points of the surface.
 using FixedRegion = std::function<bool(const Vec3<double>&)>;

@@ -17,6 +17,8 @@
 #include <palpate/response/setup/boundary_element.hpp>
 #include <palpate/response/setup/load_positions.hpp>
 
+#include <Eigen/SVD>
+
 namespace palpate {
 
 namespace detail {
@@ -24,7 +26,16 @@ namespace detail {
 /// -int U t_near dS for the three unit forces at a node, at every vertex (3n x 3).
 class NearSource {
  public:
-  NearSource(const BoundaryElements& bem, double nu) : bem_(bem), nu_(nu) {}
+  NearSource(const BoundaryElements& bem, double nu) : bem_(bem), nu_(nu), mass_(bem.mesh().nodes.size(), 0) {
+    std::vector<ElementPoint> scratch;
+    for (std::size_t t = 0; t < bem.elements().size(); ++t) {
+      scratch.clear();
+      element_points(bem.elements()[t], radon_rule(), scratch);
+      for (const ElementPoint& q : scratch)
+        for (std::size_t c = 0; c < 3; ++c)
+          mass_[bem.mesh().nodes_of[t][c]] += q.area * q.weight[Eigen::Index(c)];
+    }
+  }
 
   /// A triangle near a node, where t_near varies fast.
   struct Close {
@@ -39,9 +50,21 @@ class NearSource {
       const Vec3d w = closest_on_triangle<double>(s.source, e.corner[0], e.corner[1], e.corner[2]);
       const double distance =
           (w[0] * e.corner[0] + w[1] * e.corner[1] + w[2] * e.corner[2] - s.source).norm();
-      if (distance <= setup::near_traction * s.size) out.push_back({t, w, distance});
+      if (t == s.triangle || distance < setup::on_element * s.size)
+        out.push_back({t, t == s.triangle ? Vec3d(s.part.cast<double>()) : w, 0});
+      else if (distance <= setup::near_traction * s.size)
+        out.push_back({t, w, distance});
     }
     return out;
+  }
+
+  /// Points over such a triangle.
+  void points(const LoadNode& s, const Close& at, std::vector<ElementPoint>& out) const {
+    const Element& e = bem_.elements()[at.triangle];
+    if (at.distance < setup::singular_traction * s.size)
+      polar_points<setup::traction_points>(e, at.apex, out, at.distance);
+    else
+      element_points(e, radon_rule(), out);
   }
 
   /// Nodal values that stand for t_near of a node on all but the close triangles (3 nodes x 3).
@@ -57,30 +80,31 @@ class NearSource {
     raise_to_integrals(s, close, out);
   }
 
-  /// Adds -int U (t_near - nodal interpolant) over the triangles around a node.
-  void remainder(const LoadNode& s, const std::vector<Close>& close, const Eigen::Ref<const Matrix>& nodal,
-                 Eigen::Ref<Matrix> out) const {
+  /// Adds -int U (t_near - nodal interpolant) over the triangles around a node. Returns -int t_near dS over
+  /// the whole surface: of a body that is a half-space around the node, the unit forces.
+  [[nodiscard]] Mat3<double> remainder(const LoadNode& s, const std::vector<Close>& close,
+                                       const Eigen::Ref<const Matrix>& nodal, Eigen::Ref<Matrix> out) const {
     const ElementMesh& m = bem_.mesh();
     struct Point {
       Vec3d x;
       Mat3<double> f;
     };
-    std::vector<Point> points;
+    std::vector<Point> loads;
     std::vector<ElementPoint> scratch;
     std::vector<std::pair<std::uint32_t, Mat3<double>>> lumps;
+    Mat3<double> force = Mat3<double>::Zero();
+    for (std::size_t j = 0; j < mass_.size(); ++j)
+      force -= mass_[j] * nodal.middleRows<3>(3 * Eigen::Index(j));
     for (const auto& [t, apex, distance] : close) {
-      const Element& e = bem_.elements()[t];
       scratch.clear();
-      if (distance < setup::singular_traction * s.size)
-        polar_points<setup::traction_points>(e, apex, scratch);
-      else
-        element_points(e, radon_rule(), scratch);
+      points(s, {t, apex, distance}, scratch);
       Mat3<double> lump[3] = {Mat3<double>::Zero(), Mat3<double>::Zero(), Mat3<double>::Zero()};
       for (const ElementPoint& q : scratch) {
         Mat3<double> f = -q.area * traction(s, q.x, q.normal / q.area);
         for (int c = 0; c < 3; ++c)
           f += (q.area * q.weight[c]) * nodal.middleRows<3>(3 * Eigen::Index(m.nodes_of[t][std::size_t(c)]));
-        points.push_back({q.x, f});
+        loads.push_back({q.x, f});
+        force += f;
         for (int c = 0; c < 3; ++c) lump[c] += q.weight[c] * f;
       }
       for (std::size_t c = 0; c < 3; ++c) {
@@ -104,7 +128,7 @@ class NearSource {
       } else {
         // At the node itself the mean over a patch is wanted: 1/R^2 is cut off there.
         const double cut_off = distance < setup::own_vertex * s.size ? setup::own_cut_off * s.size : 0;
-        for (const Point& q : points) {
+        for (const Point& q : loads) {
           const Vec3d r = q.x - x;
           if (r.squaredNorm() < cut_off * cut_off) continue;
           sum += bem_.kelvin().displacement(r, q.f);
@@ -112,6 +136,7 @@ class NearSource {
       }
       out.middleRows<3>(3 * Eigen::Index(i)) += sum;
     }
+    return force;
   }
 
  private:
@@ -156,6 +181,7 @@ class NearSource {
 
   const BoundaryElements& bem_;
   double nu_;
+  std::vector<double> mass_;  // of the nodes [m^2]
 };
 
 }  // namespace detail
@@ -170,6 +196,13 @@ namespace detail {
   const Vec3d u = own ? flat_punch_load(r, -node.normal, 0, setup::own_disc * node.size, e, nu)
                       : point_load<double>(r, -node.normal, e, nu);
   return u / (4 * std::numbers::pi);
+}
+/// Inverse of what acts on the body for the unit forces at a node: the identity, nearly. Its singular values
+/// are bounded where a mesh that folds over itself leaves hardly any force.
+[[nodiscard]] inline Mat3<double> bounded_inverse(const Mat3<double>& force) {
+  const Eigen::JacobiSVD<Matrix> parts(Matrix(force), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return parts.matrixV() * parts.singularValues().cwiseMax(setup::min_force).cwiseInverse().asDiagonal() *
+         parts.matrixU().transpose();
 }
 }  // namespace detail
 
@@ -186,6 +219,7 @@ namespace detail {
                              const LoadNode& node) {
     for (int l = 0; l < 3; ++l) out.block<3, 1>(row, l) = detail::near_at_vertex(m, node, v, l, nu);
   };
+  std::vector<Mat3<double>> force(nodes.size());
   constexpr Eigen::Index block = detail::setup::loads_together;
   const Eigen::Index blocks = (count + block - 1) / block;
   detail::parallel_for(static_cast<std::size_t>(blocks), bem.threads(), [&](std::size_t b) {
@@ -204,16 +238,26 @@ namespace detail {
     columns.noalias() = bem.H_fixed() * prescribed;
     columns.noalias() -= bem.G() * traction;
     for (Eigen::Index j = 0; j < size; ++j)
-      source.remainder(nodes[std::size_t(first + j)], close[std::size_t(j)], traction.middleCols<3>(3 * j),
-                       columns.middleCols<3>(3 * j));
+      force[std::size_t(first + j)] =
+          source.remainder(nodes[std::size_t(first + j)], close[std::size_t(j)],
+                           traction.middleCols<3>(3 * j), columns.middleCols<3>(3 * j));
   });
   bem.solve(w);
-  // The fixed vertices' rows now contain tractions; the displacement there is w = -u_near.
-  for (auto v : bem.fixed())
-    for (Eigen::Index j = 0; j < count; ++j) {
-      prescribe(w.middleCols<3>(3 * j), 3 * Eigen::Index(v), v, nodes[std::size_t(j)]);
-      w.block<3, 3>(3 * Eigen::Index(v), 3 * j) *= -1;
+  for (Eigen::Index j = 0; j < count; ++j) {
+    const LoadNode& node = nodes[std::size_t(j)];
+    // Where the surface is not smooth, or another part is near, what acts on the body is not quite the unit
+    // forces: u = (u_near + w) force^-1.
+    const Mat3<double> per_force = detail::bounded_inverse(force[std::size_t(j)]);
+    for (std::uint32_t v = 0; v < m.vertices.size(); ++v) {
+      Mat3<double> near;
+      prescribe(near, 0, v, node);
+      auto regular = w.block<3, 3>(3 * Eigen::Index(v), 3 * j);
+      if (m.fixed_vertex[v])  // these rows contain tractions; the displacement is 0
+        regular = -near;
+      else
+        regular = (near + regular) * per_force - near;
     }
+  }
   return w;
 }
 

@@ -8,10 +8,16 @@
 /// to the next free crease: w changes with the load's position over D, and between positions it is
 /// interpolated linearly. Without the middles a contact between two nodes next to a crease is three times as
 /// wrong as one at a node (docs/response_field.md).
+///
+/// A load that is shared among the nodes around it by linear weights is spread too widely. In the mean over
+/// the surface that is mended by what is added to the nodes' loads (`sharpening`): the field of a load at
+/// node k, and as much of the others' as linear interpolation has too much there, by a quadratic in the
+/// load's position.
 
 #include <palpate/response/setup/constants.hpp>
 #include <palpate/response/setup/make_element_mesh.hpp>
-#include <palpate/response/tick/load_mesh.hpp>
+#include <palpate/response/setup/quadratic_fit.hpp>
+#include <palpate/response/tick/patch_table.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -43,7 +49,8 @@ class LoadPositions {
         number_[k] = static_cast<std::uint32_t>(nodes_.size());
         const ElementMesh::Node& node = m.nodes[k];
         nodes_.push_back({node.normal, node.source, node.size, 0, 0, Vec3<float>::UnitX(), node.crease});
-        find_position(nodes_.back(), around_[node.vertex]);
+        const Vec3d at = find_position(nodes_.back(), around_[node.vertex]);
+        if (node.crease) draw_onto_element(nodes_.back(), at);
       }
     };
     add_nodes(true);
@@ -56,6 +63,7 @@ class LoadPositions {
       for (auto j : ring[k])
         nodes_[k].spacing += (nodes_[j].source - nodes_[k].source).norm() / double(ring[k].size());
     fit_gradients(ring);
+    fit_sharpening(ring);
     add_edges();
   }
 
@@ -69,13 +77,19 @@ class LoadPositions {
   /// Weights g such that sum g h(node) is the gradient of h along the surface at node k, for any h. Not for
   /// edge nodes.
   [[nodiscard]] const std::vector<Weight>& gradient(std::size_t k) const noexcept { return gradient_[k]; }
+  /// What is missing at node k in the mean of the linear interpolant around it: sum weight h(node) for any h.
+  /// The weights sum to 0. None at nodes that are not solved or next to a crease or to the fixed region.
+  [[nodiscard]] const std::vector<NodeWeight>& sharpening(std::size_t k) const noexcept {
+    return sharpening_[k];
+  }
 
  private:
   using List = std::vector<std::uint32_t>;
   static constexpr std::uint32_t none = ~0u;
 
-  // The part of the boundary element mesh that contains a node's source.
-  void find_position(LoadNode& node, const List& triangles) const {
+  // The part of the boundary element mesh that contains a node's source: its triangle, with the weights.
+  Vec3d find_position(LoadNode& node, const List& triangles) const {
+    Vec3d weights = Vec3d::UnitX();
     double best = (std::numeric_limits<double>::max)();
     for (auto t : triangles) {
       const auto& c = mesh_.triangles[t];
@@ -85,8 +99,16 @@ class LoadPositions {
       if (!(distance < best)) continue;
       best = distance;
       node.triangle = t;
-      node.part = w.cwiseMax(0.0).cast<float>();
+      weights = w.cwiseMax(0.0);
     }
+    node.part = weights.cast<float>();
+    return weights;
+  }
+  // A load a little outside the body would not act on it, and one inside it would act twice.
+  void draw_onto_element(LoadNode& node, const Vec3d& at) const {
+    const Element element(mesh_, node.triangle);
+    node.source = element.at(at);
+    node.normal = unit_or(element.normal(at), node.normal);
   }
   // The nodes at both ends of an edge, seen from one of its sides.
   [[nodiscard]] std::array<std::uint32_t, 2> ends(const MeshEdge& e, std::size_t side) const noexcept {
@@ -133,7 +155,7 @@ class LoadPositions {
                     false};
       List near = around_[e.a()];
       near.insert(near.end(), around_[e.b()].begin(), around_[e.b()].end());
-      find_position(node, near);
+      draw_onto_element(node, find_position(node, near));
       for (std::size_t side = 0; side < 2; ++side)
         middle_[e.triangle[side]][e.corner[side]] = static_cast<std::uint32_t>(nodes_.size());
       nodes_.push_back(node);
@@ -248,6 +270,44 @@ class LoadPositions {
     }
   }
 
+  // Beside a crease or the fixed region w grows beyond what the mesh resolves: its second derivatives there
+  // are not known.
+  void fit_sharpening(const std::vector<List>& ring) {
+    sharpening_.resize(nodes_.size());
+    std::vector<std::uint8_t> at_edge(nodes_.size()), is_left_out;
+    for (std::size_t k = 0; k < nodes_.size(); ++k) at_edge[k] = nodes_[k].crease;
+    for (std::size_t t = 0; t < triangles_.size(); ++t)
+      if (mesh_.fixed_triangle[whole_[t]])
+        for (auto k : triangles_[t]) at_edge[k] = 1;
+    is_left_out = at_edge;
+    for (std::size_t k = 0; k < nodes_.size(); ++k)
+      for (auto j : ring[k])
+        if (at_edge[j]) is_left_out[k] = 1;
+    std::vector<Vec3d> by(nodes_.size(), Vec3d::Zero());
+    std::vector<double> mass(nodes_.size(), 0);
+    for (const auto& t : triangles_)
+      for (std::size_t c = 0; c < 3; ++c)
+        add_mean_error({nodes_[t[0]].source, nodes_[t[1]].source, nodes_[t[2]].source}, c,
+                       Tangents(nodes_[t[c]].normal), by[t[c]], mass[t[c]]);
+    for (std::uint32_t k = 0; k < nodes_.size(); ++k) {
+      if (is_left_out[k]) continue;
+      const LoadNode& node = nodes_[k];
+      List near = ring[k];
+      for (auto j : ring[k])
+        for (auto l : ring[j])
+          if (l != k && !at_edge[l]) add_once(near, l);
+      std::vector<Neighbour> seen;
+      for (auto j : near)
+        seen.push_back({j, nodes_[j].source - node.source, nodes_[j].normal.dot(node.normal)});
+      double sum = 0;
+      for (const auto& [j, K] : fit_second_derivatives(node.normal, node.spacing, seen)) {
+        sharpening_[k].push_back({j, by[k].dot(K) / mass[k]});
+        sum += sharpening_[k].back().weight;
+      }
+      sharpening_[k].push_back({k, -sum});
+    }
+  }
+
   // A node where parts meet, and strips between it and the parts' loads along each side of every crease.
   void add_edges() {
     const ElementMesh& m = mesh_;
@@ -300,6 +360,7 @@ class LoadPositions {
   std::vector<std::array<std::uint32_t, 3>> triangles_;
   List whole_;  // the boundary element mesh's, of each
   std::vector<std::vector<Weight>> gradient_;
+  std::vector<std::vector<NodeWeight>> sharpening_;
   std::size_t solved_ = 0;
   std::vector<List> parts_;  // of the last nodes
   std::vector<std::uint32_t> share_begin_;

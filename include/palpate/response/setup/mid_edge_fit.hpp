@@ -17,10 +17,9 @@
 /// The sums are over the triangles around v, with b by K there. Over equal triangles, a quarter of a
 /// quadratic's error is left where it is curved in all directions alike, two fifths where in one.
 
-#include <palpate/core/cholesky.hpp>
-#include <palpate/response/setup/constants.hpp>
 #include <palpate/response/setup/element_mesh.hpp>
 #include <palpate/response/setup/mesh_edges.hpp>
+#include <palpate/response/setup/quadratic_fit.hpp>
 
 namespace palpate::detail {
 
@@ -46,11 +45,10 @@ class MidEdgeFit {
         const std::uint32_t c = edge.corner[side];
         of_[edge.triangle[side]][c] = i;
         for (auto k : {nodes[c], nodes[(c + 1) % 3]}) {  // twice where the edge is smooth
-          const Vec3d t1 = perpendicular(m.nodes[k].normal), t2 = m.nodes[k].normal.cross(t1);
-          const double p = e.dot(t1), q = e.dot(t2);
+          const Vec3d square = Tangents(m.nodes[k].normal).squares(e);
           double sum = 0;
           for (const auto& [vertex, K] : fits[k]) {
-            const double w = -0.125 / 4 * (p * p * K[0] + 2 * p * q * K[1] + q * q * K[2]);
+            const double w = -0.125 / 4 * square.dot(K);
             all.push_back({vertex, w});
             sum += w;
           }
@@ -80,17 +78,8 @@ class MidEdgeFit {
   [[nodiscard]] std::uint32_t edge(std::size_t t, std::size_t c) const noexcept { return of_[t][c]; }
 
  private:
-  // Second derivatives at a node (11, 12, 22) by the displacement of each neighbour less the node's own
-  // [1/m^2].
-  using Fit = std::vector<std::pair<std::uint32_t, Vec3d>>;
+  using Fit = std::vector<SecondDerivative>;  // at a node, by the displacement of vertices
 
-  struct Row {  // one neighbour's: its displacement is by . (slopes, second derivatives)
-    std::uint32_t vertex;
-    double weight;
-    std::array<double, 5> by;
-  };
-
-  // Weighted least squares, 1/d^2, with penalties where the neighbours do not determine the fit.
   [[nodiscard]] static std::vector<Fit> fit_nodes(const ElementMesh& m) {
     std::vector<std::vector<std::uint32_t>> ring(m.nodes.size());
     for (const auto& t : m.nodes_of)
@@ -100,33 +89,16 @@ class MidEdgeFit {
       }
     std::vector<Fit> fits(m.nodes.size());
     for (std::uint32_t k = 0; k < m.nodes.size(); ++k) {
+      const ElementMesh::Node& node = m.nodes[k];
       std::vector<std::uint32_t> near = ring[k];
       for (auto j : ring[k])
         for (auto l : ring[j]) add_once(near, l);
-      const ElementMesh::Node& node = m.nodes[k];
-      const Vec3d &x = m.vertices[node.vertex], t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
-      SpdSystem<5> A{};
-      std::vector<Row> rows;
-      for (auto j : near) {
-        const double facing = m.nodes[j].normal.dot(node.normal);
-        if (m.nodes[j].vertex == node.vertex || facing < setup::curvature_cosine)
-          continue;  // round the corner
-        const Vec3d d = (m.vertices[m.nodes[j].vertex] - x) / node.size;
-        const double p = d.dot(t1), q = d.dot(t2), w = facing / d.squaredNorm();
-        const Row row{m.nodes[j].vertex, w * w, {p, q, 0.5 * p * p, p * q, 0.5 * q * q}};
-        for (std::size_t r = 0; r < 5; ++r)
-          for (std::size_t c = 0; c <= r; ++c) A.at(r, c) += row.weight * row.by[r] * row.by[c];
-        rows.push_back(row);
-      }
-      const double slopes = A.at(0, 0) + A.at(1, 1) + setup::no_weight;
-      for (std::size_t r = 0; r < 5; ++r)
-        A.at(r, r) += (r < 2 ? setup::slope_penalty : setup::curvature_penalty) * slopes;
-      if (!A.factor(5)) fail_at("MidEdgeFit", "neighbours must be finite", "node", k);
-      for (const Row& row : rows) {
-        for (std::size_t r = 0; r < 5; ++r) A.b[r] = row.weight * row.by[r];
-        A.substitute(5);
-        fits[k].push_back({row.vertex, Vec3d(A.b[2], A.b[3], A.b[4]) / (node.size * node.size)});
-      }
+      std::vector<Neighbour> seen;
+      for (auto j : near)
+        if (m.nodes[j].vertex != node.vertex)
+          seen.push_back({m.nodes[j].vertex, m.vertices[m.nodes[j].vertex] - m.vertices[node.vertex],
+                          m.nodes[j].normal.dot(node.normal)});
+      fits[k] = fit_second_derivatives(node.normal, node.size, seen);
     }
     return fits;
   }
@@ -136,20 +108,11 @@ class MidEdgeFit {
     std::vector<Vec3d> by(m.nodes.size(), Vec3d::Zero());
     std::vector<double> mass(m.vertices.size(), 0);
     for (std::size_t t = 0; t < m.triangles.size(); ++t) {
-      const auto& corner = m.triangles[t];
-      const auto edge = [&](std::size_t c) -> Vec3d {
-        return m.vertices[corner[(c + 1) % 3]] - m.vertices[corner[c]];
-      };
-      const double area = 0.5 * edge(0).cross(edge(1)).norm();
+      const Triangle& at = m.triangles[t];
       for (std::size_t c = 0; c < 3; ++c) {
-        const ElementMesh::Node& node = m.nodes[m.nodes_of[t][c]];
-        const Vec3d t1 = perpendicular(node.normal), t2 = node.normal.cross(t1);
-        for (std::size_t k = 0; k < 3; ++k) {
-          const double p = edge(k).dot(t1), q = edge(k).dot(t2),
-                       share = (k == (c + 1) % 3 ? 1 : 2) * area / 15;
-          by[m.nodes_of[t][c]] -= 0.125 * share * Vec3d(p * p, 2 * p * q, q * q);
-        }
-        mass[corner[c]] += area / 3;
+        const std::uint32_t k = m.nodes_of[t][c];
+        add_mean_error({m.vertices[at[0]], m.vertices[at[1]], m.vertices[at[2]]}, c,
+                       Tangents(m.nodes[k].normal), by[k], mass[at[c]]);
       }
     }
     at_vertex_.resize(m.vertices.size());

@@ -2,7 +2,8 @@
 #pragma once
 
 /// @file Quadrature on triangles: Radon's rule of degree 5, a rule of degree 2, and Duffy's map towards a
-/// point, which takes 1/R out of an integrand. Set-up only. Sources: [radon1948], [duffy1982].
+/// point, which takes 1/R out of an integrand. Set-up only. Sources: [radon1948], [duffy1982],
+/// [johnston2005].
 
 #include <palpate/core/vector.hpp>
 
@@ -67,17 +68,26 @@ template <std::size_t N>
 }
 
 /// N x N points crowded towards the corner `apex` of the triangle with corners at the barycentric positions
-/// `corner`.
+/// `corner`. For an integrand that is singular at a distance from the apex, beside the triangle: `distance`,
+/// over the triangle's size, more than 0. Then it is smooth in s, u = distance sinh(s asinh(1 / distance)).
 template <std::size_t N>
 [[nodiscard]] inline std::array<TrianglePoint, N * N> duffy_rule(const Vec3<double>& apex,
                                                                  const Vec3<double>& b, const Vec3<double>& c,
-                                                                 double share) noexcept {
+                                                                 double share, double distance = 0) noexcept {
   const Gauss<N> g = gauss_rule<N>();
+  Gauss<N> along = g;
+  if (distance > 0) {
+    const double whole = std::asinh(1 / distance);
+    for (std::size_t i = 0; i < N; ++i) {
+      along.x[i] = distance * std::sinh(whole * g.x[i]);
+      along.w[i] = g.w[i] * distance * whole * std::cosh(whole * g.x[i]);
+    }
+  }
   std::array<TrianglePoint, N * N> points;
   for (std::size_t i = 0; i < N; ++i)
     for (std::size_t j = 0; j < N; ++j) {
-      const double u = g.x[i], v = g.x[j];
-      points[i * N + j] = {(1 - u) * apex + u * ((1 - v) * b + v * c), share * 2 * u * g.w[i] * g.w[j]};
+      const double u = along.x[i], v = g.x[j];
+      points[i * N + j] = {(1 - u) * apex + u * ((1 - v) * b + v * c), share * 2 * u * along.w[i] * g.w[j]};
     }
   return points;
 }

@@ -126,14 +126,18 @@ PALPATE_COMPILED_INLINE void ResponseField::build_from(const MeshData<double>& m
   report(1);
 }
 
-// Force dipole, bending and torsional couples: derivatives of the forces' fields by their position.
+// Force dipole, bending and torsional couples: derivatives of the forces' fields by their position. And the
+// sharpened forces, of second derivatives.
 PALPATE_COMPILED_INLINE void ResponseField::derive(const detail::LoadPositions& positions, std::size_t k) {
   using Row = Eigen::Map<const Eigen::ArrayXf>;
   const auto size = static_cast<Eigen::Index>(3 * stride_);
   const Vec3<double> m = -load_mesh_.nodes()[k].normal, t1 = perpendicular(Vec3<double>(-m)),
                      t2 = t1.cross(m);
-  for (std::size_t l = 3; l < loads; ++l) {
-    Eigen::Map<Eigen::ArrayXf> sum(&influence_[(loads * k + l) * 3 * stride_], size);
+  const auto field = [&](std::size_t l) {
+    return Eigen::Map<Eigen::ArrayXf>(&influence_[(loads * k + l) * 3 * stride_], size);
+  };
+  for (std::size_t l = 3; l < sharpened; ++l) {
+    auto sum = field(l);
     for (const auto& w : positions.gradient(k)) {
       const Vec3<double> f = l == 3   ? Vec3<double>(0.5 * w.g)
                              : l == 6 ? Vec3<double>(0.5 * m.cross(w.g))
@@ -141,6 +145,12 @@ PALPATE_COMPILED_INLINE void ResponseField::derive(const detail::LoadPositions& 
       for (int i = 0; i < 3; ++i)
         sum += static_cast<float>(f[i]) * Row(influence(w.node, std::size_t(i)), size);
     }
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    auto sum = field(sharpened + i);
+    sum = Row(influence(k, i), size);
+    for (const auto& s : positions.sharpening(k))
+      sum += static_cast<float>(2 * s.weight) * Row(influence(s.node, i), size);
   }
 }
 
@@ -154,7 +164,7 @@ PALPATE_COMPILED_INLINE void ResponseField::join(const detail::LoadPositions& po
     return Eigen::Map<Eigen::ArrayXf>(&influence_[(loads * k + l) * 3 * stride_], size);
   };
   for (auto part : positions.parts(k)) {
-    for (std::size_t l = 0; l < loads; ++l)
+    for (std::size_t l = 0; l < sharpened; ++l)
       if (l != 4 && l != 5) sum(l) += share * Row(influence(part, l), size);
     const Vec3<double> pn = load_mesh_.nodes()[part].normal, p1 = perpendicular(pn), p2 = pn.cross(p1);
     sum(4) += share * (static_cast<float>(t1.dot(p1)) * Row(influence(part, 4), size) +
