@@ -127,6 +127,10 @@ class ResponseField {
              const Params& params);
   void build_from(const MeshData<double>& mesh, const std::vector<std::uint8_t>& fixed_triangle,
                   const Params& params);
+  // At set-up: what influence() reads.
+  [[nodiscard]] float* row(std::size_t k, std::size_t l) noexcept {
+    return &influence_[(loads * k + l) * 3 * stride_];
+  }
   void derive(const detail::LoadPositions& positions, std::size_t k);
   void join(const detail::LoadPositions& positions, std::size_t k);
   void read_mesh();

@@ -88,8 +88,8 @@ TEST_CASE("a closed path round a bent body takes no work") {
   const double coarse = round(500), fine = round(1000);
   CAPTURE(coarse);
   CAPTURE(fine);
-  CHECK(std::abs(coarse) <
-        1e-3);  // w lags by what its turns leave. Measured: -6.1e-4; with half the step -3.0e-4
+  // w lags by what its turns leave. Measured: -6.1e-4; with half the step -3.0e-4.
+  CHECK(std::abs(coarse) < 1e-3);
   CHECK(fine <= 0);
 }
 

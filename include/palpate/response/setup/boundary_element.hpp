@@ -45,11 +45,11 @@ void element_points(const Element& e, const Rule& rule, std::vector<ElementPoint
 /// there in three. `distance`: of a singularity from the apex, 0 if it lies there [m].
 template <std::size_t N>
 void polar_points(const Element& e, const Vec3d& apex, std::vector<ElementPoint>& out, double distance = 0) {
+  const Vec3d x = e.at(apex);
   for (int c = 0; c < 3; ++c) {
     const double share = apex[c];
     if (share < setup::min_share) continue;
     const int b = (c + 1) % 3, d = (c + 2) % 3;
-    const Vec3d x = e.at(apex);
     const double size = 0.5 * ((e.corner[b] - x).norm() + (e.corner[d] - x).norm());
     element_points(e, duffy_rule<N>(apex, Vec3d::Unit(b), Vec3d::Unit(d), share, distance / size), out);
   }

@@ -141,11 +141,11 @@ inline constexpr double min_share = 1e-9;
 /// Distance from a load within which the near field's traction is integrated itself, not by its values at the
 /// nodes [-].
 inline constexpr double near_traction = 2.2;
+/// Distance from a load within which it lies on the element [-]: more than rounding.
+inline constexpr double on_element = 1e-6;
 /// Distance from a load within which its traction is not smooth over an element [-]: no nodal value there,
 /// and points of Duffy's map.
 inline constexpr double singular_traction = 0.6;
-/// Distance from a load within which it lies on the element [-]: more than rounding.
-inline constexpr double on_element = 1e-6;
 /// Points of that map in each direction.
 inline constexpr int traction_points = 6;
 /// Distance, over that of the farthest vertex of the near elements, beyond which forces at their vertices

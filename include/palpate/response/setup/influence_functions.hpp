@@ -46,14 +46,16 @@ class NearSource {
   [[nodiscard]] std::vector<Close> close(const LoadNode& s) const {
     std::vector<Close> out;
     for (std::uint32_t t = 0; t < bem_.elements().size(); ++t) {
+      if (t == s.triangle) {
+        out.push_back({t, s.part.cast<double>(), 0});
+        continue;
+      }
       const Element& e = bem_.elements()[t];
       const Vec3d w = closest_on_triangle<double>(s.source, e.corner[0], e.corner[1], e.corner[2]);
       const double distance =
           (w[0] * e.corner[0] + w[1] * e.corner[1] + w[2] * e.corner[2] - s.source).norm();
-      if (t == s.triangle || distance < setup::on_element * s.size)
-        out.push_back({t, t == s.triangle ? Vec3d(s.part.cast<double>()) : w, 0});
-      else if (distance <= setup::near_traction * s.size)
-        out.push_back({t, w, distance});
+      if (distance <= setup::near_traction * s.size)
+        out.push_back({t, w, distance < setup::on_element * s.size ? 0 : distance});
     }
     return out;
   }
@@ -243,21 +245,20 @@ namespace detail {
                            traction.middleCols<3>(3 * j), columns.middleCols<3>(3 * j));
   });
   bem.solve(w);
-  for (Eigen::Index j = 0; j < count; ++j) {
-    const LoadNode& node = nodes[std::size_t(j)];
-    // Where the surface is not smooth, or another part is near, what acts on the body is not quite the unit
-    // forces: u = (u_near + w) force^-1.
-    const Mat3<double> per_force = detail::bounded_inverse(force[std::size_t(j)]);
+  // Where the surface is not smooth, or another part is near, what acts on the body is not quite the unit
+  // forces: u = (u_near + w) force^-1.
+  detail::parallel_for(nodes.size(), bem.threads(), [&](std::size_t j) {
+    const Mat3<double> per_force = detail::bounded_inverse(force[j]);
     for (std::uint32_t v = 0; v < m.vertices.size(); ++v) {
       Mat3<double> near;
-      prescribe(near, 0, v, node);
-      auto regular = w.block<3, 3>(3 * Eigen::Index(v), 3 * j);
+      prescribe(near, 0, v, nodes[j]);
+      auto regular = w.block<3, 3>(3 * Eigen::Index(v), 3 * Eigen::Index(j));
       if (m.fixed_vertex[v])  // these rows contain tractions; the displacement is 0
         regular = -near;
       else
         regular = (near + regular) * per_force - near;
     }
-  }
+  });
   return w;
 }
 

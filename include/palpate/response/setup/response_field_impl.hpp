@@ -107,7 +107,7 @@ PALPATE_COMPILED_INLINE void ResponseField::build_from(const MeshData<double>& m
   influence_.resize(loads * 3 * stride_ * load_mesh_.nodes().size(), 0.f);
   for (std::uint32_t k = 0; k < positions.solved_or_fixed(); ++k)
     for (std::size_t l = 0; l < 3; ++l) {
-      float* out = &influence_[(loads * k + l) * 3 * stride_];
+      float* out = row(k, l);
       for (std::uint32_t v = 0; v < mesh_.vertices.size(); ++v) {
         const Vec3<double> u =
             k < load_mesh_.solved()
@@ -133,9 +133,7 @@ PALPATE_COMPILED_INLINE void ResponseField::derive(const detail::LoadPositions& 
   const auto size = static_cast<Eigen::Index>(3 * stride_);
   const Vec3<double> m = -load_mesh_.nodes()[k].normal, t1 = perpendicular(Vec3<double>(-m)),
                      t2 = t1.cross(m);
-  const auto field = [&](std::size_t l) {
-    return Eigen::Map<Eigen::ArrayXf>(&influence_[(loads * k + l) * 3 * stride_], size);
-  };
+  const auto field = [&](std::size_t l) { return Eigen::Map<Eigen::ArrayXf>(row(k, l), size); };
   for (std::size_t l = 3; l < sharpened; ++l) {
     auto sum = field(l);
     for (const auto& w : positions.gradient(k)) {
@@ -160,9 +158,7 @@ PALPATE_COMPILED_INLINE void ResponseField::join(const detail::LoadPositions& po
   const auto size = static_cast<Eigen::Index>(3 * stride_);
   const float share = 1.f / static_cast<float>(positions.parts(k).size());
   const Vec3<double> n = load_mesh_.nodes()[k].normal, t1 = perpendicular(n), t2 = n.cross(t1);
-  const auto sum = [&](std::size_t l) {
-    return Eigen::Map<Eigen::ArrayXf>(&influence_[(loads * k + l) * 3 * stride_], size);
-  };
+  const auto sum = [&](std::size_t l) { return Eigen::Map<Eigen::ArrayXf>(row(k, l), size); };
   for (auto part : positions.parts(k)) {
     for (std::size_t l = 0; l < sharpened; ++l)
       if (l != 4 && l != 5) sum(l) += share * Row(influence(part, l), size);
