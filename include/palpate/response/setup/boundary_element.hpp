@@ -62,6 +62,7 @@ class BoundaryElements {
   BoundaryElements(ElementMesh mesh, double nu, unsigned threads)
       : mesh_(std::move(mesh)), mid_edge_fit_(mesh_), kelvin_(nu), threads_(threads) {
     if (!(nu >= 0 && nu <= 0.5)) fail("BoundaryElements", "nu must be in [0, 1/2]", nu);
+    mesh_.middle = mid_edge_fit_.middles(mesh_);
     for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
       const detail::Element& e = elements_.emplace_back(mesh_, t);
       detail::element_points(e, radon_rule(), points7_);

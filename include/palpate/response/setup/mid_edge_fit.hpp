@@ -11,6 +11,12 @@
 /// plane; 0 where it is linear. With linear u alone the bending of a bar or plate is 10 to 900 % wrong
 /// (docs/accuracy.md). The idea is that of gradient recovery, [zienkiewicz1992].
 ///
+/// The same weights on the vertices' positions place the middles of the elements' edges, so that geometry and
+/// displacement are of one kind (isoparametric): else a rotation is none of the body's displacements, and a
+/// rod of seven edges around bends half as far as it should. For this least weights w are added by which the
+/// middle comes onto the surface, x, as far as the neighbours y span the way there:
+///     w_k = (y_k - mean) . l / |y_k - half|^2,   (M + penalty tr M) l = x - half - sum weight (y - half)
+///
 /// Where u is drawn linearly nevertheless, r is added at the vertices, so that the mean of u is right without
 /// mid-edge corrections:
 ///     r_v = sum int phi_v 4 phi_c phi_d b_cd dS / sum int phi_v dS
@@ -20,6 +26,8 @@
 #include <palpate/response/setup/element_mesh.hpp>
 #include <palpate/response/setup/mesh_edges.hpp>
 #include <palpate/response/setup/quadratic_fit.hpp>
+
+#include <Eigen/Cholesky>
 
 namespace palpate::detail {
 
@@ -39,7 +47,7 @@ class MidEdgeFit {
     for (std::uint32_t i = 0; i < edges.size(); ++i) {
       const MeshEdge& edge = edges[i];
       const Vec3d e = m.vertices[edge.b()] - m.vertices[edge.a()];
-      std::vector<VertexWeight> all;
+      std::vector<VertexWeight>& all = weights_[i];
       for (std::size_t side = 0; side < 2; ++side) {
         const auto& nodes = m.nodes_of[edge.triangle[side]];
         const std::uint32_t c = edge.corner[side];
@@ -55,13 +63,10 @@ class MidEdgeFit {
           all.push_back({m.nodes[k].vertex, -sum});
         }
       }
-      std::sort(all.begin(), all.end(), [](const auto& l, const auto& r) { return l.vertex < r.vertex; });
-      for (const VertexWeight& w : all) {
-        if (weights_[i].empty() || weights_[i].back().vertex != w.vertex)
-          weights_[i].push_back(w);
-        else
-          weights_[i].back().weight += w.weight;
-      }
+      for (std::size_t side = 0; side < 2; ++side)
+        all.push_back({m.triangles[edge.triangle[side]][(edge.corner[side] + 2) % 3], 0});
+      add_up(all);
+      draw_to(m.middle[edge.triangle[0]][edge.corner[0]], m.vertices[edge.a()] + 0.5 * e, m, all);
     }
     fit_vertices(m, fits);
   }
@@ -69,6 +74,16 @@ class MidEdgeFit {
   [[nodiscard]] std::size_t size() const noexcept { return weights_.size(); }
   [[nodiscard]] const std::vector<VertexWeight>& operator[](std::size_t edge) const noexcept {
     return weights_[edge];
+  }
+  /// Middles of the edges, as ElementMesh::middle.
+  [[nodiscard]] std::vector<std::array<Vec3d, 3>> middles(const ElementMesh& m) const {
+    std::vector<std::array<Vec3d, 3>> out(m.triangles.size());
+    for (std::size_t t = 0; t < out.size(); ++t)
+      for (std::size_t c = 0; c < 3; ++c) {
+        out[t][c] = 0.5 * (m.vertices[m.triangles[t][c]] + m.vertices[m.triangles[t][(c + 1) % 3]]);
+        for (const VertexWeight& w : weights_[of_[t][c]]) out[t][c] += w.weight * m.vertices[w.vertex];
+      }
+    return out;
   }
   /// r at vertex v; empty where it is fixed.
   [[nodiscard]] const std::vector<VertexWeight>& at_vertex(std::size_t v) const noexcept {
@@ -101,6 +116,41 @@ class MidEdgeFit {
       fits[k] = fit_second_derivatives(node.normal, node.size, seen);
     }
     return fits;
+  }
+
+  // One weight for each vertex.
+  static void add_up(std::vector<VertexWeight>& all) {
+    std::sort(all.begin(), all.end(), [](const auto& l, const auto& r) { return l.vertex < r.vertex; });
+    std::size_t count = 0;
+    for (const VertexWeight& w : all)
+      if (count > 0 && all[count - 1].vertex == w.vertex)
+        all[count - 1].weight += w.weight;
+      else
+        all[count++] = w;
+    all.resize(count);
+  }
+  // Adds the smallest weights, of sum 0, by which those of the positions are x, the middle of the edge a, b.
+  static void draw_to(const Vec3d& x, const Vec3d& half, const ElementMesh& m,
+                      std::vector<VertexWeight>& all) {
+    Vec3d missing = x - half, mean = Vec3d::Zero();
+    Mat3<double> M = Mat3<double>::Zero();
+    double sum = 0;
+    for (const VertexWeight& w : all) {
+      const Vec3d y = m.vertices[w.vertex] - half;
+      const double near = 1 / y.squaredNorm();
+      missing -= w.weight * y;
+      mean += near * y;
+      M += near * y * y.transpose();
+      sum += near;
+    }
+    mean /= sum;
+    M -= sum * mean * mean.transpose();
+    M.diagonal().array() += setup::middle_penalty * M.trace();
+    const Vec3d by = M.ldlt().solve(missing);
+    for (VertexWeight& w : all) {
+      const Vec3d y = m.vertices[w.vertex] - half;
+      w.weight += by.dot(y - mean) / y.squaredNorm();
+    }
   }
 
   void fit_vertices(const ElementMesh& m, const std::vector<Fit>& fits) {
