@@ -75,7 +75,8 @@ class MidEdgeFit {
   [[nodiscard]] const std::vector<VertexWeight>& operator[](std::size_t edge) const noexcept {
     return weights_[edge];
   }
-  /// Middles of the edges, as ElementMesh::middle.
+  /// Middles of the edges where these weights place them, in place of ElementMesh::middle, to which they were
+  /// drawn.
   [[nodiscard]] std::vector<std::array<Vec3d, 3>> middles(const ElementMesh& m) const {
     std::vector<std::array<Vec3d, 3>> out(m.triangles.size());
     for (std::size_t t = 0; t < out.size(); ++t)
