@@ -25,7 +25,7 @@
 
 namespace palpate {
 
-inline constexpr std::uint32_t saved_field_version = 9;
+inline constexpr std::uint32_t saved_field_version = 10;
 
 namespace detail {
 /// Not against an adversary: against truncation, transmission and wrong files.

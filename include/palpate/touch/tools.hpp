@@ -6,10 +6,13 @@
 /// | tool                       | tool coordinates [m]        | contact area to resolve A_0           |
 /// |----------------------------|-----------------------------|---------------------------------------|
 /// | `ball(radius)`             | about the origin            | none: a point with a law              |
-/// | `capsule(radius, length)`  | about the origin, along y   | an end, in by a quarter of its radius |
+/// | `capsule(radius, length)`  | about the origin, along y   | 1/13 of it; 1 to 4 times an end's     |
 /// | `cylinder(radius, length)` | about the origin, along y   | an end's face                         |
 /// | `box(size)`                | about the origin            | the face across y                     |
 /// | `tool_mesh(mesh)`          | the mesh's own              | a tenth of the surface                |
+///
+/// A capsule's half then has 256 points, as many as Touch takes beneath the surface. An end's contact area is
+/// that where it is in by a quarter of its radius: it has 10 points at least.
 
 #include <palpate/core/pose.hpp>
 #include <palpate/geometry/triangle_mesh.hpp>

@@ -5,6 +5,9 @@
 #include "support/response_bodies.hpp"
 #include "support/response_meshes.hpp"
 
+#include <numbers>
+#include <random>
+
 namespace {
 using namespace palpate;
 using V = Vec3<double>;
@@ -65,4 +68,65 @@ TEST_CASE("edges: short on a fin, along creases and at the rim; as many vertices
   CHECK(fin < 0.75 * face);
   CHECK(edge < face);
   CHECK(rim < 0.85 * face);
+}
+
+TEST_CASE("slender round part: six edges around it, by vertices on top of the wanted number") {
+  // A pin 10 mm thick and 100 mm long out of a ball of 60 mm, turned about y.
+  const double R = 0.03, r = 0.005, pi = std::numbers::pi, neck = std::asin(r / R);
+  const auto turned = [&](double length) {
+    std::vector<std::array<double, 2>> profile;  // radius, height
+    for (int i = 1; i <= 24; ++i) {
+      const double a = pi + (neck - pi) * i / 24;
+      profile.push_back({R * std::sin(a), R * std::cos(a)});
+    }
+    for (int i = 1; i <= 40 && length > 0; ++i) profile.push_back({r, R * std::cos(neck) + length * i / 40});
+    const double top = profile.back()[1];
+    for (int i = 1; i < 6 && length > 0; ++i)
+      profile.push_back({r * std::cos(pi / 2 * i / 6), top + r * std::sin(pi / 2 * i / 6)});
+    MeshData<double> mesh;
+    const std::uint32_t around = 24, rings = static_cast<std::uint32_t>(profile.size());
+    for (const auto& [radius, height] : profile)
+      for (std::uint32_t k = 0; k < around; ++k)
+        mesh.vertices.push_back(
+            {radius * std::sin(2 * pi * k / around), height, radius * std::cos(2 * pi * k / around)});
+    mesh.vertices.push_back({0, -R, 0});
+    mesh.vertices.push_back({0, length > 0 ? top + r : R, 0});
+    for (std::uint32_t k = 0; k < around; ++k) {
+      const std::uint32_t next = (k + 1) % around, last = (rings - 1) * around;
+      mesh.triangles.push_back({rings * around, next, k});
+      for (std::uint32_t a = 0; a < last; a += around) {
+        mesh.triangles.push_back({a + k, a + next, a + around + next});
+        mesh.triangles.push_back({a + k, a + around + next, a + around + k});
+      }
+      mesh.triangles.push_back({last + k, last + next, rings * around + 1});
+    }
+    return mesh;
+  };
+  const ElementMesh with = element_mesh(turned(0.1), 200), without = element_mesh(turned(0), 200);
+  const auto on_ball = [](const V& x) { return x.y() > 0.005 && x.y() < 0.02; };
+  const double pin = mean_edge(with, [](const V& x) { return x.y() > 0.06 && x.y() < 0.11; }),
+               ball = mean_edge(with, on_ball), alone = mean_edge(without, on_ball),
+               around = 2 * pi * r / pin;
+  MESSAGE(with.vertices.size(), " vertices, ", without.vertices.size(), " without the pin; ", around,
+          " edges around it; on the ball ", 1e3 * ball, " and ", 1e3 * alone, " mm");
+  CHECK(around >
+        5.5);  // 5.9: seven where its width is not taken too large; 4.5 with edges as long as it is thick
+  CHECK(with.vertices.size() < 2 * 200);
+  CHECK(ball < 1.25 * alone);  // 1.15
+}
+
+TEST_CASE("noise of the given mesh makes no creases and no more vertices than wanted") {
+  MeshData<double> mesh = test::ellipsoid_mesh(V(0.03, 0.03, 0.03), 24);
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> noise(-5e-4, 5e-4);
+  for (auto& p : mesh.vertices) p += noise(random) * p.normalized() + V(0, 0.02, 0);
+  const SmoothSurface surface(mesh);
+  std::size_t creases = 0, within = 0;
+  for (std::size_t e = 0; e < surface.edges().size(); ++e) creases += surface.is_crease(e);
+  const ElementMesh m = element_mesh(mesh, 300);
+  for (const auto& n : m.nodes) within += n.crease && !m.fixed_vertex[n.vertex];
+  MESSAGE(creases, " creases given; ", m.vertices.size(), " vertices, ", within, " nodes at creases");
+  REQUIRE(creases > 300);
+  CHECK(m.vertices.size() < 1.15 * 300);
+  CHECK(within == 0);
 }

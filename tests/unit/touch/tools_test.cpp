@@ -33,6 +33,11 @@ TEST_CASE("tools: closed meshes of the size asked for, with points as fine as th
   CHECK_RELATIVE(told.spacing * told.spacing, 1e-4 / 40, 1e-12);
   CHECK(told.centre_of_mass == V(0, 1, 0));
   CHECK(fine.spacing == 1e-3);
+  // A capsule has 512 points, but an end in by a quarter of its radius 10 to 40.
+  const double end = pi / 4 * 0.005 * 0.005;
+  CHECK_RELATIVE(rod.spacing * rod.spacing, 2 * pi * 0.005 * 0.03 / 512, 1e-12);
+  const MeshTool long_rod = capsule(0.005, 0.07);
+  CHECK_RELATIVE(long_rod.spacing * long_rod.spacing, end / 10, 1e-12);
   // A needle has no more points than 1,500.
   const MeshTool needle = cylinder(0.0002, 0.2);
   CHECK_RELATIVE(needle.spacing, std::sqrt(TriangleMesh<double>(needle.mesh).area() / 1500), 1e-12);

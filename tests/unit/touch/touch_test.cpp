@@ -227,8 +227,8 @@ TEST_CASE("touch, tools with faces: what is drawn rests on the tool, and is the 
   const V top(0, 0.05, 0);
   for (std::size_t v = 0; v < n; ++v)
     if ((block().mesh().vertices()[v] - top).norm() < 1e-12) middle = v;
-  for (const auto& tool :
-       {box(V(0.02, 0.01, 0.02)), capsule(0.008, 0.01), tool_mesh(standing_box(V(0.02, 0.02, 0.02), 3))}) {
+  for (const auto& tool : {box(V(0.02, 0.01, 0.02)), capsule(0.008, 0.01, {.contact_area = 5e-5}),
+                           tool_mesh(standing_box(V(0.02, 0.02, 0.02), 3))}) {
     Touch touch(block(), tool, Coulomb({.mu_static = 0.4, .mu_dynamic = 0.3}));
     std::vector<float> p(3 * n), q(3 * n);
     const VertexBuffer<float> out{.positions = p.data(), .normals = q.data()};

@@ -80,21 +80,16 @@ namespace detail {
 /// surface of a hollow needs no fixed triangle.
 inline void require_each_piece_fixed(const MeshData<double>& mesh,
                                      const std::vector<std::uint8_t>& fixed_triangle) {
-  std::vector<std::uint32_t> parent(mesh.vertices.size());
-  for (std::uint32_t v = 0; v < parent.size(); ++v) parent[v] = v;
-  const auto root = [&](std::uint32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-  };
+  DisjointSets pieces(mesh.vertices.size());
   for (const auto& t : mesh.triangles) {
-    parent[root(t[1])] = root(t[0]);
-    parent[root(t[2])] = root(t[0]);
+    pieces.join(t[1], t[0]);
+    pieces.join(t[2], t[0]);
   }
   std::vector<double> volume(mesh.vertices.size(), 0);
   std::vector<std::uint8_t> is_fixed(mesh.vertices.size(), 0);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const auto& c = mesh.triangles[t];
-    const std::uint32_t r = root(c[0]);
+    const std::uint32_t r = pieces.root(c[0]);
     const Vec3d& origin = mesh.vertices[r];
     volume[r] += (mesh.vertices[c[0]] - origin)
                      .dot((mesh.vertices[c[1]] - origin).cross(mesh.vertices[c[2]] - origin));
@@ -129,7 +124,7 @@ inline void require_each_piece_fixed(const MeshData<double>& mesh,
   std::vector<std::uint8_t> crease(edges.size(), 0);
   std::vector<std::uint8_t> on_crease(m.vertices.size(), 0);
   for (std::size_t e = 0; e < edges.size(); ++e) {
-    if (!std::binary_search(made.features_.begin(), made.features_.end(), edges[e].key)) continue;
+    if (!made.features_.contains(edges[e].key)) continue;
     const auto& d = edges[e];
     const Vec3d l =
         corner_normal(d.triangle[0], d.corner[0]) + corner_normal(d.triangle[0], (d.corner[0] + 1u) % 3);

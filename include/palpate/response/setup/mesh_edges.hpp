@@ -6,9 +6,11 @@
 
 #include <palpate/core/error.hpp>
 #include <palpate/core/vector.hpp>
+#include <palpate/response/setup/constants.hpp>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -71,18 +73,40 @@ struct MeshEdge {
   return 0.5 * (b - a).cross(c - a);
 }
 
+[[nodiscard]] inline double longest_edge(const Vec3d& a, const Vec3d& b, const Vec3d& c) noexcept {
+  return std::sqrt((std::max)({(a - b).squaredNorm(), (b - c).squaredNorm(), (c - a).squaredNorm()}));
+}
+/// A triangle so thin that its normal says nothing of the surface.
+[[nodiscard]] inline bool is_sliver(const Vec3d& a, const Vec3d& b, const Vec3d& c) noexcept {
+  const double longest = longest_edge(a, b, c);
+  return area_vector(a, b, c).norm() < setup::min_shape * longest * longest;
+}
+
+/// Disjoint sets of the numbers below `count`, each one its own at first.
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count) : parent_(count) {
+    for (std::uint32_t i = 0; i < count; ++i) parent_[i] = i;
+  }
+  /// The number that stands for i's set.
+  [[nodiscard]] std::uint32_t root(std::uint32_t i) noexcept {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  /// a's set joins b's, whose root stays.
+  void join(std::uint32_t a, std::uint32_t b) noexcept { parent_[root(a)] = root(b); }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
 /// For each corner of each triangle the number of its fan: corners of one vertex that are joined across edges
 /// that are not creases. Returns the fan of corner 3 t + c; `count` receives the number of fans.
 [[nodiscard]] inline std::vector<std::uint32_t> corner_fans(const std::vector<Triangle>& triangles,
                                                             const std::vector<MeshEdge>& edges,
                                                             const std::vector<std::uint8_t>& crease,
                                                             std::uint32_t& count) {
-  std::vector<std::uint32_t> parent(3 * triangles.size());
-  for (std::uint32_t i = 0; i < parent.size(); ++i) parent[i] = i;
-  const auto root = [&](std::uint32_t i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  DisjointSets corners(3 * triangles.size());
   for (std::size_t e = 0; e < edges.size(); ++e) {
     if (crease[e]) continue;
     const MeshEdge& edge = edges[e];
@@ -91,15 +115,12 @@ struct MeshEdge {
     // Start of the edge in one triangle is its end in the other.
     const std::uint32_t pairs[2][2] = {{3 * t0 + c0, 3 * t1 + (c1 + 1) % 3},
                                        {3 * t0 + (c0 + 1) % 3, 3 * t1 + c1}};
-    for (const auto& pair : pairs) {
-      const std::uint32_t a = root(pair[0]), b = root(pair[1]);
-      parent[(std::max)(a, b)] = (std::min)(a, b);
-    }
+    for (const auto& pair : pairs) corners.join(pair[0], pair[1]);
   }
-  std::vector<std::uint32_t> fan(parent.size()), number(parent.size(), ~0u);
+  std::vector<std::uint32_t> fan(3 * triangles.size()), number(fan.size(), ~0u);
   count = 0;
-  for (std::uint32_t i = 0; i < parent.size(); ++i) {
-    const std::uint32_t r = root(i);
+  for (std::uint32_t i = 0; i < fan.size(); ++i) {
+    const std::uint32_t r = corners.root(i);
     if (number[r] == ~0u) number[r] = count++;
     fan[i] = number[r];
   }

@@ -13,7 +13,6 @@ namespace palpate {
 
 namespace detail {
 
-/// Features are edges that stay: creases and the rim.
 class Remesher {
  public:
   Remesher(const SmoothSurface& surface, const std::vector<std::uint8_t>& fixed_triangle,
@@ -21,27 +20,22 @@ class Remesher {
       : p_(surface.mesh().vertices),
         t_(surface.mesh().triangles),
         fixed_(fixed_triangle),
+        features_(surface, fixed_triangle, uniform_length(params.vertices)),
         surface_(surface),
         params_(params),
-        wanted_(surface, params) {
-    const auto& edges = surface.edges();
-    for (std::size_t e = 0; e < edges.size(); ++e) {
-      const bool rim = fixed_[edges[e].triangle[0]] != fixed_[edges[e].triangle[1]];
-      if (!rim && !surface.is_crease(e)) continue;
-      features_.push_back(edges[e].key);
-      segments_.push_back({p_[edges[e].a()], p_[edges[e].b()]});
-    }
-    std::sort(features_.begin(), features_.end());
-  }
+        wanted_(surface, params) {}
 
   void run() {
     wanted_.uniform(uniform_length(setup::fine_vertices * params_.vertices));
+    wanted_.measure_sections(p_, t_);
     if (double(p_.size()) > setup::too_fine_vertices * params_.vertices) decimate(true);
+    drop_faint_lines();
     double aim = params_.vertices;
     for (int pass = 0; pass < 3; ++pass) {
       measure();
-      wanted_.fit(p_, t_, aim);
+      const double further = wanted_.fit(p_, t_, aim);
       if (pass == 0) decimate(false);
+      drop_faint_lines();
       for (int i = 0; i < (pass == 0 ? 6 : 3); ++i) {
         split();
         collapse(false);
@@ -49,7 +43,7 @@ class Remesher {
         flip();
         relax();
       }
-      aim = std::clamp(aim * setup::usual_excess * params_.vertices / double(p_.size()),
+      aim = std::clamp((aim + further) * setup::usual_excess * params_.vertices / double(p_.size()),
                        setup::min_aim * params_.vertices, params_.vertices);
     }
     compact();
@@ -57,14 +51,11 @@ class Remesher {
 
   std::vector<Vec3d> p_;
   std::vector<Triangle> t_;
-  std::vector<std::uint8_t> fixed_;      // per triangle
-  std::vector<std::uint64_t> features_;  // sorted keys of edges that stay
+  std::vector<std::uint8_t> fixed_;  // per triangle
+  FeatureLines features_;
   [[nodiscard]] double length() const noexcept { return wanted_.length(); }
 
  private:
-  struct Segment {
-    Vec3d a, b;
-  };
   // Vertex to triangles, rebuilt by each pass.
   struct Rings {
     std::vector<std::uint32_t> begin, item;
@@ -78,9 +69,6 @@ class Remesher {
     }
   };
 
-  [[nodiscard]] bool is_feature(std::uint64_t key) const noexcept {
-    return std::binary_search(features_.begin(), features_.end(), key);
-  }
   [[nodiscard]] double area(std::uint32_t t) const noexcept {
     return area_vector(p_[t_[t][0]], p_[t_[t][1]], p_[t_[t][2]]).norm();
   }
@@ -91,6 +79,8 @@ class Remesher {
   }
 
   void measure() { wanted_.measure(p_, t_, fixed_, features_); }
+
+  void drop_faint_lines() { features_.drop_faint(p_, t_, fixed_, wanted_.length()); }
 
   void decimate(bool uniform) {
     for (int i = 0; i < 60; ++i) {
@@ -115,9 +105,12 @@ class Remesher {
       const MeshEdge& edge = edges[e];
       if (locked[edge.triangle[0]] || locked[edge.triangle[1]]) continue;
       const auto m = static_cast<std::uint32_t>(p_.size());
-      const bool feature = is_feature(edge.key);
+      const bool feature = features_.contains(edge.key);
       const Vec3d middle = 0.5 * (p_[edge.a()] + p_[edge.b()]);
-      p_.push_back(feature ? project_line(middle) : surface_.project(middle));
+      const Vec3d on = feature ? features_.project(middle) : surface_.project(middle);
+      // Farther off lies another part of the surface, or an end of the edge.
+      const bool near = (on - middle).norm() < setup::max_shift * (p_[edge.a()] - p_[edge.b()]).norm();
+      p_.push_back(near ? on : middle);
       for (int s = 0; s < 2; ++s) {
         const std::uint32_t t = edge.triangle[s];
         const std::uint32_t c = edge.corner[s];
@@ -128,45 +121,15 @@ class Remesher {
         t_.push_back(other);
         fixed_.push_back(fixed_[t]);
       }
-      if (feature) {
-        features_.erase(std::lower_bound(features_.begin(), features_.end(), edge.key));
-        for (std::uint32_t end : {edge.a(), edge.b()}) {
-          const std::uint64_t key = edge_key(m, end);
-          features_.insert(std::lower_bound(features_.begin(), features_.end(), key), key);
-        }
-      }
+      if (feature) features_.cut(edge, m);
     }
-  }
-
-  // 0: inside a smooth part, 1: on a feature line, 2: end, corner or crossing of lines.
-  [[nodiscard]] std::vector<std::uint8_t> ranks() const {
-    std::vector<std::uint8_t> count(p_.size(), 0);
-    std::vector<std::array<std::uint32_t, 2>> ends(p_.size());
-    const auto add = [&](std::uint32_t v, std::uint32_t w) {
-      if (count[v] < 2) ends[v][count[v]] = w;
-      if (count[v] < 3) ++count[v];
-    };
-    for (std::uint64_t key : features_) {
-      const auto a = static_cast<std::uint32_t>(key >> 32), b = static_cast<std::uint32_t>(key);
-      add(a, b);
-      add(b, a);
-    }
-    for (std::uint32_t v = 0; v < p_.size(); ++v) {
-      if (count[v] == 0) continue;
-      // A line that turns as much as a crease has a corner there.
-      const bool smooth =
-          count[v] == 2 && (p_[v] - p_[ends[v][0]]).normalized().dot((p_[ends[v][1]] - p_[v]).normalized()) >
-                               setup::crease_cosine;
-      count[v] = smooth ? 1 : 2;
-    }
-    return count;
   }
 
   void collapse(bool uniform) {
     if (!uniform) measure();
     const std::vector<MeshEdge> edges = mesh_edges(t_, "Remesher");
     const Rings rings(p_.size(), t_);
-    const std::vector<std::uint8_t> rank = ranks();
+    const std::vector<FeatureLines::Rank> at = features_.ranks(p_);
     std::vector<std::pair<double, std::uint32_t>> order;
     for (std::uint32_t e = 0; e < edges.size(); ++e)
       if (const double r = (p_[edges[e].a()] - p_[edges[e].b()]).norm() / wanted_(edges[e].a(), edges[e].b());
@@ -179,10 +142,11 @@ class Remesher {
     for (const auto& [ratio, e] : order) {
       const std::uint32_t a = edges[e].a(), b = edges[e].b();
       if (locked[a] || locked[b]) continue;
-      const bool feature = is_feature(edges[e].key);
-      const bool done = rank[a] <= rank[b] ? try_collapse(a, b, feature, rank, rings, locked, dead, moved)
-                                           : try_collapse(b, a, feature, rank, rings, locked, dead, moved);
-      if (!done && rank[a] == rank[b]) try_collapse(b, a, feature, rank, rings, locked, dead, moved);
+      const bool feature = features_.contains(edges[e].key);
+      const bool done = at[a].rank <= at[b].rank
+                            ? try_collapse(a, b, feature, at, rings, locked, dead, moved)
+                            : try_collapse(b, a, feature, at, rings, locked, dead, moved);
+      if (!done && at[a].rank == at[b].rank) try_collapse(b, a, feature, at, rings, locked, dead, moved);
     }
     std::size_t kept = 0;
     for (std::size_t t = 0; t < t_.size(); ++t) {
@@ -192,18 +156,24 @@ class Remesher {
     }
     t_.resize(kept);
     fixed_.resize(kept);
-    for (auto& key : features_) key = edge_key(moved[key >> 32], moved[key & 0xffffffffu]);
-    std::erase_if(features_, [](std::uint64_t key) { return (key >> 32) == (key & 0xffffffffu); });
-    std::sort(features_.begin(), features_.end());
-    features_.erase(std::unique(features_.begin(), features_.end()), features_.end());
+    features_.renumber(moved);
     compact();
   }
 
+  // A short edge between rough feature lines, as noise and slivers of the given mesh make them, that is no
+  // plate's end.
+  [[nodiscard]] bool is_detail(std::uint32_t v, std::uint32_t u) const noexcept {
+    return (p_[v] - p_[u]).norm() <
+           (std::min)({setup::detail_ratio * wanted_(v, u), setup::detail_thickness * wanted_.thickness(v),
+                       setup::detail_thickness * wanted_.thickness(u)});
+  }
+
   // Moves v into u and removes the two triangles between them, if the surface stays a good one.
-  bool try_collapse(std::uint32_t v, std::uint32_t u, bool feature, const std::vector<std::uint8_t>& rank,
+  bool try_collapse(std::uint32_t v, std::uint32_t u, bool feature, const std::vector<FeatureLines::Rank>& at,
                     const Rings& rings, std::vector<std::uint8_t>& locked, std::vector<std::uint8_t>& dead,
                     std::vector<std::uint32_t>& moved) {
-    if (rank[v] == 2 || (rank[v] == 1 && !feature)) return false;
+    const bool detail = at[v].rough && at[u].rough && is_detail(v, u);
+    if (!detail && (at[v].rank == 2 || (at[v].rank == 1 && !feature))) return false;
     std::uint32_t common = 0, shared = 0, far_end = ~0u;
     for (std::uint32_t i = rings.begin[v]; i < rings.begin[v + 1]; ++i) {
       const Triangle& t = t_[rings.item[i]];
@@ -211,7 +181,7 @@ class Remesher {
       for (auto w : t) {
         if (locked[w]) return false;
         has_u = has_u || w == u;
-        if (w != v && w != u && is_feature(edge_key(v, w))) far_end = w;
+        if (w != v && w != u && features_.contains(edge_key(v, w))) far_end = w;
       }
       if (has_u) {
         ++shared;
@@ -222,13 +192,12 @@ class Remesher {
       for (int c = 0; c < 3; ++c)
         q[c] = p_[t[static_cast<std::size_t>(c)] == v ? u : t[static_cast<std::size_t>(c)]];
       const Vec3d before = area_vector(p_[t[0]], p_[t[1]], p_[t[2]]), after = area_vector(q[0], q[1], q[2]);
-      const double longest = std::sqrt((std::max)(
-          {(q[0] - q[1]).squaredNorm(), (q[1] - q[2]).squaredNorm(), (q[2] - q[0]).squaredNorm()}));
-      if (after.norm() < setup::min_shape * longest * longest && after.norm() < before.norm()) return false;
-      if (before.dot(after) < setup::max_turn_cosine * before.norm() * after.norm()) return false;
-      const double was =
-          std::sqrt((std::max)({(p_[t[0]] - p_[t[1]]).squaredNorm(), (p_[t[1]] - p_[t[2]]).squaredNorm(),
-                                (p_[t[2]] - p_[t[0]]).squaredNorm()}));
+      const Vec3d &p0 = p_[t[0]], &p1 = p_[t[1]], &p2 = p_[t[2]];
+      if (is_sliver(q[0], q[1], q[2]) && after.norm() < before.norm()) return false;
+      if (!(detail && is_sliver(p0, p1, p2)) &&
+          before.dot(after) < setup::max_turn_cosine * before.norm() * after.norm())
+        return false;
+      const double longest = longest_edge(q[0], q[1], q[2]), was = longest_edge(p0, p1, p2);
       if (longest > setup::split_ratio * wanted_(u) && longest > was) return false;
     }
     if (shared != 2) return false;
@@ -238,7 +207,7 @@ class Remesher {
         for (std::uint32_t j = rings.begin[u]; j < rings.begin[u + 1]; ++j) {
           const Triangle& t = t_[rings.item[j]];
           if (t[0] == w || t[1] == w || t[2] == w) {
-            if (w == far_end && rank[v] == 1) return false;
+            if (w == far_end && at[v].rank == 1 && !detail) return false;
             ++common;
           }
         }
@@ -271,7 +240,7 @@ class Remesher {
     for (const auto& e : edges) keys.push_back(e.key);
     std::vector<std::uint8_t> locked(t_.size(), 0);
     for (const auto& e : edges) {
-      if (locked[e.triangle[0]] || locked[e.triangle[1]] || is_feature(e.key)) continue;
+      if (locked[e.triangle[0]] || locked[e.triangle[1]] || features_.contains(e.key)) continue;
       Triangle &l = t_[e.triangle[0]], &r = t_[e.triangle[1]];
       const std::uint32_t a = l[e.corner[0]], b = l[(e.corner[0] + 1u) % 3], c = l[(e.corner[0] + 2u) % 3],
                           d = r[(e.corner[1] + 2u) % 3];
@@ -294,33 +263,17 @@ class Remesher {
     }
   }
 
-  [[nodiscard]] Vec3d project_line(const Vec3d& x) const noexcept {
-    Vec3d best = x;
-    double distance = (std::numeric_limits<double>::max)();
-    for (const Segment& s : segments_) {
-      const Vec3d d = s.b - s.a;
-      const double l2 = d.squaredNorm();
-      const double u = l2 > 0 ? std::clamp(d.dot(x - s.a) / l2, 0.0, 1.0) : 0.0;
-      const Vec3d q = s.a + u * d;
-      if ((q - x).squaredNorm() < distance) {
-        distance = (q - x).squaredNorm();
-        best = q;
-      }
-    }
-    return best;
-  }
-
   void relax() {
     measure();
     const Rings rings(p_.size(), t_);
-    const std::vector<std::uint8_t> rank = ranks();
+    const std::vector<FeatureLines::Rank> at = features_.ranks(p_);
     for (std::uint32_t v = 0; v < p_.size(); ++v) {
-      if (rank[v] == 2) continue;
+      if (at[v].rank == 2) continue;
       Vec3d sum = Vec3d::Zero();
       double weight = 0;
       for (std::uint32_t i = rings.begin[v]; i < rings.begin[v + 1]; ++i) {
         for (auto w : t_[rings.item[i]]) {
-          if (w == v || (rank[v] == 1 && !is_feature(edge_key(v, w)))) continue;
+          if (w == v || (at[v].rank == 1 && !features_.contains(edge_key(v, w)))) continue;
           const double l = wanted_(v, w);
           sum += (p_[w] - p_[v]) / l;  // shorter edges where they are wanted
           weight += 1 / l;
@@ -328,7 +281,7 @@ class Remesher {
       }
       if (!(weight > 0)) continue;
       const Vec3d target = p_[v] + setup::relaxation * sum / weight;
-      const Vec3d old = p_[v], moved = rank[v] == 1 ? project_line(target) : surface_.project(target);
+      const Vec3d old = p_[v], moved = at[v].rank == 1 ? features_.project(target) : surface_.project(target);
       bool good = true;
       for (std::uint32_t i = rings.begin[v]; i < rings.begin[v + 1] && good; ++i) {
         const Triangle& t = t_[rings.item[i]];
@@ -359,13 +312,11 @@ class Remesher {
     wanted_.renumber(number, count);
     for (auto& t : t_)
       for (auto& v : t) v = number[v];
-    for (auto& key : features_) key = edge_key(number[key >> 32], number[key & 0xffffffffu]);
-    std::sort(features_.begin(), features_.end());
+    features_.renumber(number);
   }
 
   const SmoothSurface& surface_;
   RemeshParams params_;
-  std::vector<Segment> segments_;
   EdgeLength wanted_;
 };
 

@@ -13,8 +13,10 @@
 #include <palpate/response/setup/constants.hpp>
 #include <palpate/response/setup/mesh_edges.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -119,6 +121,25 @@ class SmoothSurface {
     const auto at = tree_->closest(x);
     evaluate(at, p, n);
     return detail::way_through(*tree_, at.position, -n, most);
+  }
+  /// Perimeter [m] of the part that the normal at the surface's point near x crosses over a thickness t, if
+  /// the part is slender: that of an ellipse as thick as this and as wide as the second shortest of four ways
+  /// through the middle of the crossing, 45 degrees apart. Of these at least two go across a slender part, by
+  /// 1.1 to 1.4 times its width; across a plate only one, at its corners.
+  [[nodiscard]] double perimeter_at(const Vec3<double>& x, double thickness, double most) const noexcept {
+    Vec3<double> p, n;
+    const auto at = tree_->closest(x);
+    evaluate(at, p, n);
+    const Vec3<double> middle = at.position - 0.5 * thickness * n, u = n.unitOrthogonal(), v = n.cross(u);
+    std::array<double, 4> width;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double angle = 0.25 * std::numbers::pi * double(i);
+      const Vec3<double> along = std::cos(angle) * u + std::sin(angle) * v;
+      width[i] = detail::way_through(*tree_, middle, along, most) +
+                 detail::way_through(*tree_, middle, -along, most);
+    }
+    std::sort(width.begin(), width.end());
+    return std::numbers::pi * std::hypot(thickness, width[1]) / std::numbers::sqrt2;
   }
 
  private:

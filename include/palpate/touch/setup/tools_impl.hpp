@@ -18,6 +18,7 @@ namespace detail {
 
 inline constexpr double points_on_contact_area = 40;  // chosen: within 2 % (docs/resolved.md), 30 us
 inline constexpr double most_points = 1500;           // chosen: Touch takes 256 beneath the surface
+inline constexpr double capsule_points = 512;         // of them half beneath the surface
 inline constexpr std::size_t tool_vertices = 1500;    // chosen: chords of a circle 0.2 % below it
 
 /// Surface of revolution about y: half a circle of `radius` at each end, `length` between their centres.
@@ -67,8 +68,12 @@ PALPATE_COMPILED_INLINE MeshTool capsule(double radius, double length, const Too
   require_positive(radius, "capsule", "radius [m] must be > 0");
   require_positive(length, "capsule", "length [m] must be > 0");
   constexpr double deep = 0.25;  // d / r, chosen; Hertz's contact has the area pi r d
-  return detail::mesh_tool("capsule", detail::capsule_mesh(radius, length),
-                           std::numbers::pi * deep * radius * radius, params);
+  const double end = std::numbers::pi * deep * radius * radius;
+  // Lying on its side a capsule has up to half of its surface in a soft body. At an end 10 points stay.
+  const double side = 2 * std::numbers::pi * radius * (2 * radius + length) *
+                      (detail::points_on_contact_area / detail::capsule_points);
+  return detail::mesh_tool("capsule", detail::capsule_mesh(radius, length), std::clamp(side, end, 4 * end),
+                           params);
 }
 
 PALPATE_COMPILED_INLINE MeshTool cylinder(double radius, double length, const ToolParams& params) {
