@@ -12,6 +12,11 @@
 #include <palpate/law/map/duffing_map.hpp>
 #include <palpate/law/map/hertz_map.hpp>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
 namespace palpate {
 
 template <Real S>
@@ -43,6 +48,29 @@ template <ForceMap Map, SampledBody B, class Fit>
   FittedMap<Map> made = fit_map<Map>(body, params.spacing, params.threads, fit);
   return {std::move(made.map), made.worst_rms, made.where};
 }
+
+/// Hertz's law in series with the body, fitted to what the field answers to a ball up to its depth; to half
+/// of it, a quarter ... where that is no such law: a part that is pushed away by more than it is thick, or
+/// has too few elements. Where it is none at any depth, Hertz's law of the half-space, and a residual of 1.
+template <Real S>
+[[nodiscard]] HertzFit fit_ball(const ResponseField& field, SphereContact<S> contact, std::size_t points) {
+  constexpr double worst_rms = 1;  // within the fixed region curves have kinks: reported, not refused
+  constexpr int halvings = 5;      // chosen: to 3 % of the depth
+  for (int i = 0; i <= halvings; ++i, contact.depth /= 2) {
+    const std::vector<CurvePoint> curve = response_curve<S>(field, contact, points);
+    const auto finite = [](const CurvePoint& p) { return is_finite(p.force); };
+    const auto pushes = [](const CurvePoint& p) { return p.force > 0; };
+    if (!std::ranges::all_of(curve, finite) || std::ranges::none_of(curve, pushes)) continue;
+    HertzFit fit = fit_hertz(curve, {.worst_rms = std::numeric_limits<double>::infinity()});
+    if (fit.fit.relative_rms <= worst_rms) return fit;
+  }
+  const double bend = 1 / double(contact.radius) + double(contact.curvature) / 2;
+  const double radius = bend > 0 ? 1 / bend : double(contact.radius);
+  const double modulus = field.E() / (1 - field.nu() * field.nu());
+  HertzFit none{.params = {.k = 4.0 / 3 * modulus * std::sqrt(radius)}, .fit = {}};
+  none.fit.relative_rms = worst_rms;
+  return none;
+}
 }  // namespace detail
 
 /// The law F(D) that `field` has for a patch pressed along the normal, at the nodes of a grid over the body,
@@ -66,7 +94,8 @@ template <SampledBody B>
 
 /// The same for a contact that grows with depth: a ball of `params.radius`, or another smooth tool with that
 /// radius of curvature, as one point (`SinglePoint`, D its depth). A body without curvature() counts as flat:
-/// right while the ball is small beside the body's own radii.
+/// right while the ball is small beside the body's own radii. Where a part is pushed away by more than it is
+/// thick the law is fitted to less than `depth` (`fit_ball`).
 template <SampledBody B>
 [[nodiscard]] ResponseMap<HertzMap<typename B::Scalar>> ball_response_map(
     const ResponseField& field, const B& body, const ResponseMapParams<typename B::Scalar>& params) {
@@ -77,14 +106,13 @@ template <SampledBody B>
       const Curvature<S> k = body.curvature(at.position);
       curvature = k.k1 + k.k2;
     }
-    return fit_hertz(response_curve<S>(field,
-                                       SphereContact<S>{.position = at.position,
-                                                        .normal = at.normal,
-                                                        .radius = params.radius,
-                                                        .curvature = curvature,
-                                                        .depth = params.depth},
-                                       params.points),
-                     {.worst_rms = 1});  // within the fixed region curves have kinks: reported, not refused
+    return detail::fit_ball<S>(field,
+                               {.position = at.position,
+                                .normal = at.normal,
+                                .radius = params.radius,
+                                .curvature = curvature,
+                                .depth = params.depth},
+                               params.points);
   });
 }
 
