@@ -40,9 +40,10 @@ using FixedPart = std::variant<FixedPredicate, std::vector<std::uint32_t>>;
 /// |        | `fixed`    |      | no default: `below(y)`, `above(y)`, any predicate, a list of vertices   |
 /// | n      | `vertices` | -    | [20, 5000], 600: of the boundary element mesh; error about 1/n          |
 ///
-/// Set-up takes seconds and grows as n^3; a copy costs a reference count, and all copies may be used by any
-/// thread. `cache`: a file that keeps the field; it is read where it was written for the same mesh, E, nu,
-/// fixed part and n by this version, and written where not.
+/// Slender parts get up to as many vertices on top. Set-up takes seconds and grows as n^3; a copy costs a
+/// reference count, and all copies may be used by any thread. `cache`: a file that keeps the field; it is
+/// read where it was written for the same mesh, E, nu, fixed part and n by this version, and written where
+/// not.
 ///
 /// Reports a mesh that is not closed and oriented (the first defect of mesh_report.hpp), one longer than 10 m
 /// or shorter than 1 mm, which is one in other units than metres, E below 10 Pa, which is one in kPa or MPa,

@@ -52,7 +52,7 @@ class EdgeLength {
   }
   /// Measures thickness, and perimeter over it, at the vertices: the least of the triangles around each.
   void measure_sections(const std::vector<Vec3d>& p, const std::vector<Triangle>& t) {
-    at_.assign(p.size(), {reach_, no_ratio, far(), far(), far()});
+    at_.assign(p.size(), {reach_, no_ratio, beyond(), beyond(), beyond()});
     for (const Triangle& c : t) {
       if (is_sliver(p[c[0]], p[c[1]], p[c[2]])) continue;  // its normal says nothing
       const Vec3d centre = (p[c[0]] + p[c[1]] + p[c[2]]) / 3;
@@ -144,9 +144,9 @@ class EdgeLength {
     double growth;
   };
 
-  [[nodiscard]] double far() const noexcept { return setup::far_away * reach_; }
+  [[nodiscard]] double beyond() const noexcept { return setup::far_away * reach_; }
   [[nodiscard]] double distance(const Vec3d& x, const std::vector<Vec3d>& points) const noexcept {
-    double best = far() * far();
+    double best = beyond() * beyond();
     for (const Vec3d& q : points) best = (std::min)(best, (q - x).squaredNorm());
     return std::sqrt(best);
   }

@@ -16,7 +16,7 @@ namespace palpate {
 
 /// What the remesher aims at.
 struct RemeshParams {
-  double vertices = 600;   ///< wanted number of vertices [-]
+  double vertices = 600;   ///< wanted number of vertices [-]; slender parts get up to as many on top
   double rim_ratio = 0.3;  ///< r: edge length at the rim over that of the body [-]
   double growth = 0.35;    ///< g: edge length gained per distance from the rim, a crease or a thin part [-]
 };

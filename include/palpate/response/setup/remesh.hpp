@@ -109,8 +109,8 @@ class Remesher {
       const Vec3d middle = 0.5 * (p_[edge.a()] + p_[edge.b()]);
       const Vec3d on = feature ? features_.project(middle) : surface_.project(middle);
       // Farther off lies another part of the surface, or an end of the edge.
-      const bool near = (on - middle).norm() < setup::max_shift * (p_[edge.a()] - p_[edge.b()]).norm();
-      p_.push_back(near ? on : middle);
+      const bool is_close = (on - middle).norm() < setup::max_shift * (p_[edge.a()] - p_[edge.b()]).norm();
+      p_.push_back(is_close ? on : middle);
       for (int s = 0; s < 2; ++s) {
         const std::uint32_t t = edge.triangle[s];
         const std::uint32_t c = edge.corner[s];
