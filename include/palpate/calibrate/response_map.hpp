@@ -9,11 +9,11 @@
 #include <palpate/calibrate/hertz_fit.hpp>
 #include <palpate/calibrate/response_curve.hpp>
 #include <palpate/geometry/sampled_surface.hpp>
+#include <palpate/law/force/power_law.hpp>
 #include <palpate/law/map/duffing_map.hpp>
 #include <palpate/law/map/hertz_map.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -66,8 +66,8 @@ template <Real S>
   }
   const double bend = 1 / double(contact.radius) + double(contact.curvature) / 2;
   const double radius = bend > 0 ? 1 / bend : double(contact.radius);
-  const double modulus = field.E() / (1 - field.nu() * field.nu());
-  HertzFit none{.params = {.k = 4.0 / 3 * modulus * std::sqrt(radius)}, .fit = {}};
+  const auto half_space = PowerLawForce<double>::hertz_sphere(field.E(), field.nu(), radius);
+  HertzFit none{.params = {.k = half_space.params().k}, .fit = {}};
   none.fit.relative_rms = worst_rms;
   return none;
 }

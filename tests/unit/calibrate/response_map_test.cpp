@@ -112,10 +112,11 @@ TEST_CASE(
   const double ball = 0.02, depth = 0.012;
   const auto fitted = ball_response_map(
       field, body, {.radius = ball, .depth = depth, .spacing = field.mesh().length, .points = 10});
-  // Up to 0.6 of the radius the worst curve is a law's to 1.16 only, which was an error.
+  // Up to 0.6 of the radius the worst curve is a law's to 1.16 only, which was an error. 0.45.
   CHECK(fitted.worst_rms < 1);
   ContactSolver<Ellipsoid<double>, HertzMap<double>> solver(
       {.object = body, .tool = {}, .force = fitted.map});
+  const auto half_space = PowerLawForce<double>::hertz_sphere(field.E(), field.nu(), ball);
   std::mt19937 random(5);
   double most = 0;
   bool grows = true;
@@ -129,11 +130,10 @@ TEST_CASE(
           solver.tick({Mat3<double>::Identity(), at.position - d * at.normal}).wrench.force.norm();
       grows = grows && felt > before;
       before = felt;
-      most =
-          (std::max)(most, felt / (4.0 / 3 * 1e5 / (1 - 0.49 * 0.49) * std::sqrt(ball) * std::pow(d, 1.5)));
+      most = (std::max)(most, felt / half_space.force(d));
     }
   }
   MESSAGE("worst fit ", fitted.worst_rms, ", most of a half-space's force ", most);
   CHECK(grows);
-  CHECK(most < 1);  // the body gives way, and its curvature makes the contact narrower
+  CHECK(most < 1);  // 0.13: the body gives way, and its curvature makes the contact narrower
 }

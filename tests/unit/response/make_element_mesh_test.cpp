@@ -109,10 +109,10 @@ TEST_CASE("slender round part: six edges around it, by vertices on top of the wa
                around = 2 * pi * r / pin;
   MESSAGE(with.vertices.size(), " vertices, ", without.vertices.size(), " without the pin; ", around,
           " edges around it; on the ball ", 1e3 * ball, " and ", 1e3 * alone, " mm");
-  CHECK(around >
-        5.5);  // 5.9: seven where its width is not taken too large; 4.5 with edges as long as it is thick
-  CHECK(with.vertices.size() < 2 * 200);
-  CHECK(ball < 1.25 * alone);  // 1.15
+  // 5.9, seven where its width is not taken too large; 4.5 with edges as long as it is thick.
+  CHECK(around > 5.5);
+  CHECK(with.vertices.size() < 2 * 200);  // 329; as many again at most
+  CHECK(ball < 1.25 * alone);             // 1.15
 }
 
 TEST_CASE("noise of the given mesh makes no creases and no more vertices than wanted") {
@@ -127,6 +127,6 @@ TEST_CASE("noise of the given mesh makes no creases and no more vertices than wa
   for (const auto& n : m.nodes) within += n.crease && !m.fixed_vertex[n.vertex];
   MESSAGE(creases, " creases given; ", m.vertices.size(), " vertices, ", within, " nodes at creases");
   REQUIRE(creases > 300);
-  CHECK(m.vertices.size() < 1.15 * 300);
+  CHECK(m.vertices.size() < 1.15 * 300);  // 326, a tenth more is usual; 924 with the noise's creases
   CHECK(within == 0);
 }

@@ -172,7 +172,7 @@ TEST_CASE("reciprocity of unit forces on a body with a thin, curved rim, held at
   std::sort(missed.begin(), missed.end());
   const double half = missed[missed.size() / 2], most = missed[missed.size() * 3 / 4];
   MESSAGE("off by ", half, " in half of the pairs, by ", most, " in three quarters");
-  // 0.013 and 0.048; 0.12 and 0.27 where loads of the vertices have not the strength that the body feels.
+  // 0.013 and 0.032; 0.12 and 0.27 where loads of the vertices have not the strength that the body feels.
   CHECK(half < 0.03);
   CHECK(most < 0.06);
 }

@@ -27,8 +27,10 @@ class Remesher {
 
   void run() {
     wanted_.uniform(uniform_length(setup::fine_vertices * params_.vertices));
-    wanted_.measure_sections(p_, t_);
-    if (double(p_.size()) > setup::too_fine_vertices * params_.vertices) decimate(true);
+    if (double(p_.size()) > setup::too_fine_vertices * params_.vertices) {
+      wanted_.measure_sections(p_, t_);
+      decimate(true);
+    }
     drop_faint_lines();
     double aim = params_.vertices;
     for (int pass = 0; pass < 3; ++pass) {
