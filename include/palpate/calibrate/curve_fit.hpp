@@ -35,17 +35,18 @@ struct CurveFit {
   std::array<bool, N> at_bound{};
   std::vector<double> residual;  ///< fitted less given, per point [N]
   double rms = 0;                ///< root mean square residual, weighted [N]
-  double relative_rms = 0;       ///< over the forces' own
+  double relative_rms = 0;       ///< over the forces' own; infinite where the curve determines no fit
 };
 
 struct CurveFitParams {
-  double worst_rms = 0.2;  ///< relative: a fit worse than this is refused; chosen
+  double worst_rms = 0.2;  ///< relative: a fit worse than this is refused; infinite: none is; chosen
   int max_steps = 200;
 };
 
 /// Fits law(p, depth) -> force. Reports: fewer than N + 2 points, numbers that are not finite, weights < 0,
 /// bounds the wrong way round, no force anywhere, parameters that the points do not determine, a fit that
-/// does not settle or is worse than `worst_rms`.
+/// does not settle or is worse than `worst_rms`. If that is infinite the last three are told by
+/// `relative_rms`.
 template <std::size_t N, class Law>
 [[nodiscard]] CurveFit<N> fit_curve(std::span<const CurvePoint> points, const Law& law,
                                     const std::array<double, N>& start, const std::array<double, N>& low,
@@ -148,7 +149,13 @@ template <std::size_t N, class Law>
     }
     settled = settled || !better;  // no step downhill is left
   }
-  if (!settled) fail(where, "the fit does not settle within the steps allowed", params.max_steps);
+  const auto none = [&params](auto... why) {
+    if (is_finite(params.worst_rms)) fail("fit_curve", why...);
+    CurveFit<N> out;
+    out.relative_rms = std::numeric_limits<double>::infinity();
+    return out;
+  };
+  if (!settled) return none("the fit does not settle within the steps allowed", double(params.max_steps));
   linearise();
   CurveFit<N> fit;
   std::size_t open = 0;
@@ -167,7 +174,7 @@ template <std::size_t N, class Law>
   Matrix B = A;
   for (std::size_t k = 0; k < N; ++k) {
     const auto i = Eigen::Index(k);
-    if (!fit.at_bound[k] && !(A(i, i) > 0)) fail_at(where, "the points do not determine it", "parameter", k);
+    if (!fit.at_bound[k] && !(A(i, i) > 0)) return none("the points do not determine parameter", double(k));
     if (!fit.at_bound[k]) continue;
     B.row(i).setZero();
     B.col(i).setZero();
@@ -177,8 +184,7 @@ template <std::size_t N, class Law>
   const Eigen::LDLT<Matrix> correlation(unit.asDiagonal() * B * unit.asDiagonal());
   // Central differences carry about ten digits, a normal matrix half of them.
   if (correlation.vectorD().minCoeff() < 1e-9)
-    fail(where,
-         "the points do not determine all parameters: the law has too many, or the depths are too alike");
+    return none("the points do not determine all parameters: too many, or the depths are too alike");
   const Matrix inverse = unit.asDiagonal() * correlation.solve(Matrix::Identity()) * unit.asDiagonal();
   const double freedom = double(m - open), variance = now / freedom, z = 1.959963985;
   // z: of a normal distribution, 97.5 % are below it.

@@ -84,6 +84,14 @@ class ResponseField {
   /// (see palpate::unresolved_area): 0 is good, 1 is a plate with too few vertices. Milliseconds; set-up
   /// only.
   [[nodiscard]] double unresolved_area() const;
+  /// Positions of the mesh's nodes where the response is no elastic body's: what presses there on a disc as
+  /// wide as an edge would draw the surface towards itself,
+  ///
+  ///     n.w n < -8 (1 - nu)/(3 pi^2 mu (l/2))      the disc's own mean displacement; l: the edges' length
+  ///
+  /// A part is too thin for its elements there (ask for more vertices), or held by few of them. A contact
+  /// there goes on as on a half-space (`Status::near_field_only`). None is good. Set-up only.
+  [[nodiscard]] std::vector<Vec3<double>> unsound_places() const;
   [[nodiscard]] const LoadMesh& load_mesh() const noexcept { return load_mesh_; }
   [[nodiscard]] const PatchTable& table() const noexcept { return table_; }
   [[nodiscard]] const MidEdgeTable& mid_edges() const noexcept { return mid_edges_; }

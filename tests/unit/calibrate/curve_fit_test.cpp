@@ -81,3 +81,21 @@ TEST_CASE("what cannot be fitted is refused") {
   CHECK_THROWS_AS((void)fit_curve<2>(good, twice, {100, 100}, {0, 0}, {1e6, 1e6}), SetupError);
   CHECK_THROWS_AS((void)fit_curve<2>(good, twice, {100, 100}, {0, 5}, {1e6, 1}), SetupError);
 }
+
+TEST_CASE("what determines no fit is told by the residual where no residual is refused") {
+  constexpr double any = std::numeric_limits<double>::infinity();
+  const auto good = curve(500, 0, 0.01, 0);
+  const auto twice = [](const std::array<double, 2>& p, double d) { return (p[0] + p[1]) * d; };
+  CHECK(fit_curve<2>(good, twice, {100, 100}, {0, 0}, {1e6, 1e6}, {.worst_rms = any}).relative_rms == any);
+  const std::vector<CurvePoint> alike(10, {0.005, 2.5, 1});
+  CHECK(fit_duffing(alike, {.worst_rms = any}).fit.relative_rms == any);
+  // One step does not settle.
+  const auto line = [](const std::array<double, 1>& p, double d) { return std::exp(p[0]) * d; };
+  CHECK_THROWS_AS((void)fit_curve<1>(good, line, {1}, {0}, {10}, {.max_steps = 1}), SetupError);
+  CHECK(fit_curve<1>(good, line, {1}, {0}, {10}, {.worst_rms = any, .max_steps = 1}).relative_rms == any);
+  std::vector<CurvePoint> zigzag = good;
+  for (std::size_t i = 0; i < zigzag.size(); ++i) zigzag[i].force = i % 2 ? 1 : 5;
+  const double rms = fit_duffing(zigzag, {.worst_rms = any}).fit.relative_rms;
+  CHECK(rms > 0.2);  // no such law, but a fit
+  CHECK(rms < 1);
+}

@@ -3,6 +3,7 @@
 #include <palpate/touch/elastic_body.hpp>
 
 #include <support/check.hpp>
+#include <support/response_bodies.hpp>
 #include <support/response_meshes.hpp>
 
 #include <doctest/doctest.h>
@@ -29,6 +30,16 @@ std::string error(const MeshData<double>& mesh, const ElasticBody::Params& param
   }
 }
 }  // namespace
+
+TEST_CASE("elastic body: a tube with too few vertices around it is refused, it has no elastic response") {
+  const MeshData<double> tube = test::torus_mesh(0.05, 0.006, 60, 14);
+  const FixedPredicate left = [](const V& x) { return x.x() < -0.04; };
+  const ElasticBody fine(tube, {.E = 1e5, .fixed = left, .vertices = 300});
+  CHECK(fine.field()->unsound_places().empty());
+  const std::string text = error(tube, {.E = 1e5, .fixed = left, .vertices = 60});
+  CHECK(text.find("the response is no elastic body's at 29 of 102 places") != std::string::npos);
+  CHECK(text.find("ask for more vertices") != std::string::npos);
+}
 
 TEST_CASE("elastic body: what is wrong is said with the value, before anything is computed") {
   const MeshData<double> good = test::ellipsoid_mesh(axes, 4);

@@ -45,19 +45,18 @@ class BodyShift {
   /// `moved`: by the tool in this tick; what begins deep in the body finds its points over some ticks.
   void measure(const PointSystem& system, const float* q, const VectorList& w, const Vec3<S>& origin,
                float moved) noexcept {
-    V loads{}, sizes{}, squares{}, areas{};
+    V loads{}, sizes{}, areas{};
     SimdVec3<V> sum{}, places{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const V qi(q + i);
       loads += qi, places += qi * system.positions().load(i);
       areas += select(qi > V(0.f), V(system.areas() + i), V(0.f));
       if constexpr (has_friction) {
-        const SimdVec3<V> wi = w.load(i);
-        squares += qi * dot(wi, wi), sum += qi * wi;
+        sum += qi * w.load(i);
       } else {
         const SimdVec3<V> m = system.directions().load(i);
         const V along = dot(m, w.load(i));
-        sizes += qi * along, squares += qi * along * along, sum += (qi * along) * m;
+        sizes += qi * along, sum += (qi * along) * m;
       }
     }
     const float load = reduce(loads);
@@ -65,7 +64,17 @@ class BodyShift {
     const Vec3<float> mean = sum_of(sum) / load;
     const float size = has_friction ? mean.norm() : reduce(sizes) / load;
     if (!(size > 0) || !is_finite(size)) return forget();
-    const float deviation = std::sqrt((std::max)(reduce(squares) / load - size * size, 0.f));
+    V squares{};  // about the mean: of equal numbers it is 0 to rounding, not to its root
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+      if constexpr (has_friction) {
+        const SimdVec3<V> from = w.load(i) - each<V>(mean);
+        squares += V(q + i) * dot(from, from);
+      } else {
+        const V from = dot(system.directions().load(i), w.load(i)) - V(size);
+        squares += V(q + i) * from * from;
+      }
+    }
+    const float deviation = std::sqrt(reduce(squares) / load);
     const float share = (std::max)(1 - reach * deviation / size, 0.f);
     const Vec3<float> target = share * mean, change = target - v_;
     const float most = 2 * moved + slowly * (system.deepest() + v_.norm()), length = change.norm();

@@ -28,6 +28,8 @@ namespace palpate::detail {
 /// depth is less by m.(u_i - v):
 ///
 ///     v = mean of u_i - 2 s m        in contact: as where the surface is sunk least; s: deviation of m_i.u_i
+///     v = mean of u_i - g m          at first touch; g: by what a point would be more than twice as deep as
+///                                    any is found: a part to which the surface comes farther is found late
 ///     v = u where the tool is nearest to the surface                  without
 ///     e: keeps mean + e where one goes over into the other; |de| = -0.3 (|dX| + |dv|)
 ///
@@ -119,7 +121,10 @@ class LoadsBeside {
     if (total > 0) {
       const float variance = sum2 / total - sum / total * (sum / total);
       const Vec3<float> mean = sum_u / total;
-      if (!touched_) rest_ += v_ - mean, v_ = mean;
+      if (!touched_) {
+        const Vec3<float> v = at_first_touch(system, mean);
+        rest_ += v_ - v, v_ = v;
+      }
       mean_ = mean;
       next_ = mean - reach * std::sqrt((std::max)(variance, 0.f)) * sum_m.stableNormalized();
     }
@@ -188,6 +193,20 @@ class LoadsBeside {
     }
     if (touched_) rest_ += mean_ - u;
     v_ = mean_ = next_ = u;
+  }
+
+  // v at first touch: see above.
+  [[nodiscard]] Vec3<float> at_first_touch(const PointSystem& system,
+                                           const Vec3<float>& mean) const noexcept {
+    float found = 0, deepest = 0;
+    Vec3<float> m = Vec3<float>::Zero();
+    for (std::size_t i = 0; i < system.size(); ++i) {
+      const Vec3<float> mi = system.direction(i);
+      const float depth = system.depth[i] - mi.dot(given_[i] - mean);
+      found = (std::max)(found, system.depth[i]);
+      if (depth > deepest) deepest = depth, m = mi;
+    }
+    return mean - (std::max)(deepest - 2 * found, 0.f) * m;
   }
 
   static constexpr float fading = 0.3f;  // chosen: a force then changes by a third more along a path

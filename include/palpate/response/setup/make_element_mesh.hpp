@@ -97,8 +97,8 @@ inline void require_each_piece_fixed(const MeshData<double>& mesh,
   }
   for (std::size_t v = 0; v < volume.size(); ++v)
     if (volume[v] > 0 && !is_fixed[v])
-      fail_at("make_element_mesh", "each piece of the mesh must be fixed somewhere: nothing fixes the one",
-              "with vertex", v);
+      fail_at("make_element_mesh", "each piece of the mesh must be fixed somewhere, nothing fixes the one",
+              "vertex", v);
 }
 
 /// Geometry of the boundary element mesh from a remeshed surface: nodes, normals, edge middles, source
