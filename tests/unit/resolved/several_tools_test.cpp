@@ -216,7 +216,7 @@ TEST_CASE("a finger feels the block that another pushes to it, by more than it i
       (void)hands.tick(at(deepest, deep), false), (void)alone.tick(at(deepest, deep), false);
     CHECK_RELATIVE(hands.tick(at(deepest, deep), false)[1].wrench.force.x(),
                    alone.tick(at(deepest, deep), false)[1].wrench.force.x(), 1e-3);  // likewise; 1e-4
-    CHECK(steepest < 1);  // measured: 0.83, 0.83, 0.98
+    CHECK(steepest < 1);  // measured: 0.86, 0.85, 0.98
   }
 }
 
