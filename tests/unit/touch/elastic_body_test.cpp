@@ -37,7 +37,10 @@ TEST_CASE("elastic body: a tube with too few vertices around it is refused, it h
   const ElasticBody fine(tube, {.E = 1e5, .fixed = left, .vertices = 300});
   CHECK(fine.field()->unsound_places().empty());
   const std::string text = error(tube, {.E = 1e5, .fixed = left, .vertices = 60});
-  CHECK(text.find("the response is no elastic body's at 29 of 102 places") != std::string::npos);
+  int unsound = 0, all = 0;
+  CHECK(std::sscanf(text.c_str(), "ElasticBody: the response is no elastic body's at %d of %d places",
+                    &unsound, &all) == 2);
+  CHECK(unsound > all / 10);  // measured: 29 of 102, with fused products 24 of 105
   CHECK(text.find("ask for more vertices") != std::string::npos);
 }
 
