@@ -149,8 +149,8 @@ template <std::size_t N, class Law>
     }
     settled = settled || !better;  // no step downhill is left
   }
-  const auto none = [&params](auto... why) {
-    if (is_finite(params.worst_rms)) fail("fit_curve", why...);
+  const auto none = [&](auto... why) {
+    if (is_finite(params.worst_rms)) fail(where, why...);
     CurveFit<N> out;
     out.relative_rms = std::numeric_limits<double>::infinity();
     return out;
