@@ -11,6 +11,7 @@
 
 #include <palpate/core/error.hpp>
 #include <palpate/core/scalar.hpp>
+#include <palpate/core/vector.hpp>
 
 #include <concepts>
 #include <cstddef>
@@ -47,6 +48,8 @@ struct NoRegularPart {
   static constexpr bool active = false;
   NoRegularPart(const auto& /*body*/, std::size_t /*capacity*/) {}
   [[nodiscard]] static constexpr float sunk() noexcept { return 0; }
+  [[nodiscard]] static constexpr bool has_all() noexcept { return true; }
+  [[nodiscard]] static Mat3<float> common() noexcept { return Mat3<float>::Zero(); }
 };
 /// What a body adds to the half-space's response: `C::RegularPart`, if there is one.
 template <class C>

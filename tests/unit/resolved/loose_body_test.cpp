@@ -3,7 +3,7 @@
 #include <palpate/geometry/box.hpp>
 #include <palpate/law/friction/coulomb.hpp>
 #include <palpate/resolved/contact_samples.hpp>
-#include <palpate/resolved/detail/convex_problem.hpp>
+#include <palpate/resolved/detail/friction_problem.hpp>
 #include <palpate/resolved/response_compliance.hpp>
 #include <palpate/solver/contact_solver.hpp>
 
@@ -48,7 +48,8 @@ TEST_CASE("a response that is not positive definite is seen, without friction an
     for (std::size_t i = 0; i < 2; ++i) u.set(i, response[i] * P[i]);
   };
   const auto mu = [](float) { return 0.3f; };
-  CHECK_FALSE(detail::solve_loads(2, loads, m, d.data(), 1, 1, 1e-7f, 50, apply_all, mu).is_convex);
+  const Mat3<float> none = Mat3<float>::Zero();
+  CHECK_FALSE(detail::solve_loads(2, loads, m, d.data(), {1, 1, none}, 1e-7f, 50, apply_all, mu).is_convex);
 }
 
 TEST_CASE("a plate that stands on a corner: no force beyond a half-space's, wherever it is pressed") {

@@ -92,6 +92,9 @@ class PointSystem {
     for (std::size_t j = 0; j < size_; ++j) to = b_ != 0 ? column<true>(j, to) : column<false>(j, to);
   }
 
+  [[nodiscard]] float norm_of_depths() const noexcept {
+    return Eigen::Map<const Eigen::VectorXf>(depth.data(), static_cast<Eigen::Index>(size_)).norm();
+  }
   /// All points are less deep by w [m].
   void sink(float w) noexcept {
     for (std::size_t i = 0; i < size_; ++i) depth[i] -= w;
@@ -130,7 +133,12 @@ class PointSystem {
   }
   /// Of the tangential over the normal response, all over the contact.
   [[nodiscard]] float tangential_share() const noexcept { return (1.5f + b_ / 2) / (1 + b_); }
-  /// A step of normal loads that is stable for a single point, and short of what all could take [1/m].
+  /// Half of the mean displacement by a unit load all over the contact's area, 3 (1 + b)/sqrt(area) [1/m]:
+  /// the other half is left to the points, for loads that are not even do less.
+  [[nodiscard]] Mat3<float> common() const noexcept {
+    return 1.5f * (1 + b_) / std::sqrt(whole_area_) * Mat3<float>::Identity();
+  }
+  /// A step of normal loads that is stable for a single point, and short of what all could take [m].
   [[nodiscard]] float flexible_step() const noexcept { return 1 / ((1 + b_) * own_cell * per_width_[0]); }
 
   /// The displacement along n at a further point of the surface by the pressures q.
@@ -189,7 +197,11 @@ class PointSystem {
   }
   // Directions, depths along them, and feet.
   void direct() noexcept {
-    for (std::size_t i = 0; i < size_; ++i) per_width_[i] = 1 / std::sqrt(area_[i]);
+    whole_area_ = 0;
+    for (std::size_t i = 0; i < size_; ++i) {
+      per_width_[i] = 1 / std::sqrt(area_[i]);
+      whole_area_ += area_[i];
+    }
     per_size2_ = deepest_ / (2 * volume_);
     for (std::size_t i = 0; i < stride_; i += V::size()) {
       const SimdVec3<V> n = n_.load(i), m = direction(x_at_.load(i), n);
@@ -261,6 +273,7 @@ class PointSystem {
   float b_ = 0;  // 1 - 2 nu
   float deepest_ = 0, volume_ = 0,
         per_size2_ = 1;  // the volume pressed over the depth: a ball's contact area
+  float whole_area_ = 0;
   AlignedList<float> area_, per_width_;
   VectorList m_, x_at_, x_, n_;  // directions of pressing, the points, their feet, normals
   BoundedList<Group> groups_;

@@ -5,7 +5,7 @@
 
 #include <palpate/core/aligned_list.hpp>
 #include <palpate/core/simd_math.hpp>
-#include <palpate/resolved/detail/convex_problem.hpp>
+#include <palpate/resolved/detail/friction_problem.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/resolved/detail/vector_list.hpp>
 

@@ -73,6 +73,7 @@ class RegularPart {
         }
       }
     }
+    nodes_ = used_.size();
   }
   /// One point, at x in object coordinates; `triangle` likewise.
   template <class Body>
@@ -96,6 +97,10 @@ class RegularPart {
     stride_ = padded<Group>(4 * used_.size());
     if (!changed_ && std::equal(used_.begin(), used_.end(), was_used_.begin(), was_used_.end())) return;
     changed_ = false;
+    common_.setZero();
+    for (std::size_t l = 0; l < nodes_; ++l)
+      for (std::size_t k = 0; k < nodes_; ++k) common_ += kept(used_[k], used_[l]);
+    if (nodes_ > 0) common_ /= static_cast<float>(nodes_ * nodes_);
     for (std::size_t l = 0; l < used_.size(); ++l)
       for (std::size_t c = 0; c < 3; ++c) {
         float* const column = &matrix_[(3 * l + c) * stride_];
@@ -108,6 +113,10 @@ class RegularPart {
       }
   }
 
+  /// What all loads do to all points: w's mean over the points' nodes [1/m].
+  [[nodiscard]] Mat3<float> common() const noexcept {
+    return is_left_out_ ? Mat3<float>(Mat3<float>::Zero()) : common_;
+  }
   /// False where nodes were left out.
   [[nodiscard]] bool has_all() const noexcept { return has_all_; }
 
@@ -344,7 +353,8 @@ class RegularPart {
   AlignedList<float> u_of_all_, u_beside_;  // likewise, of response() and by other tools' loads
   FixedVector<Four, max_nodes> beside_;     // loads of other tools, likewise
   AlignedList<float> matrix_;               // by column
-  std::size_t size_ = 0, stride_ = 0;
+  Mat3<float> common_ = Mat3<float>::Zero();
+  std::size_t size_ = 0, stride_ = 0, nodes_ = 0;  // nodes_: in use by points
   std::uint32_t tick_ = 2;
   bool changed_ = true, has_all_ = true, is_left_out_ = false;
   float sunk_ = 0;

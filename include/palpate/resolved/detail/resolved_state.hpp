@@ -12,8 +12,8 @@
 #include <palpate/resolved/detail/bounded_list.hpp>
 #include <palpate/resolved/detail/carried_surface.hpp>
 #include <palpate/resolved/detail/contact_area.hpp>
-#include <palpate/resolved/detail/convex_problem.hpp>
 #include <palpate/resolved/detail/finite_strain.hpp>
+#include <palpate/resolved/detail/friction_problem.hpp>
 #include <palpate/resolved/detail/loads_beside.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/resolved/detail/reaction.hpp>
@@ -26,6 +26,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <span>
 #include <utility>
 #include <vector>
@@ -105,8 +106,7 @@ class ResolvedState {
     per_load_ = static_cast<S>(4 * std::numbers::pi * force.shear_modulus());
     beside_.begin_tick(object, force.compliance(), tool, pose_, X, has_contact(), per_load_, regular_);
     ++tick_;
-    touching_.clear();
-    has_room_ = true;
+    touching_.clear(), has_room_ = true;
     system_.begin_tick();
   }
   /// Where the tool at X is over the undeformed surface, which others' loads move.
@@ -183,8 +183,7 @@ class ResolvedState {
       if (round == most_rounds || !take_in(force, tool, tolerance, again)) break;
     }
     finish(tool, moved);
-    bool all = has_room_ && beside_.has_all();
-    if constexpr (RegularPart::active) all = all && regular_.has_all();
+    const bool all = has_room_ && beside_.has_all() && regular_.has_all();
     beside_.drop();
     return all;
   }
@@ -243,12 +242,12 @@ class ResolvedState {
                              [this](const float* q, float* u) noexcept { displace(q, u); });
     else
       left = solve_loads(
-          size(), result_, system_.directions(), system_.depth.data(), system_.tangential_share(),
-          system_.flexible_step(), tolerance, iterations,
-          [this](const VectorList& P, VectorList& u) noexcept { displace(P, u); },
+          size(), result_, system_.directions(), system_.depth.data(),
+          {system_.flexible_step(), system_.tangential_share(), system_.common() + regular_.common()},
+          tolerance, iterations, [this](const VectorList& P, VectorList& u) noexcept { displace(P, u); },
           [&](float q) noexcept { return coefficient(friction, q); });
     if constexpr (RegularPart::active)
-      if (left.is_astray(tolerance / static_cast<float>(force.params().tolerance)) && regular_.leave_out()) {
+      if (left.is_astray(system_.norm_of_depths()) && regular_.leave_out()) {
         system_.sink(regular_.sunk());
         begin_loads(0.f);
         return solve_inside(force, friction, tolerance);
@@ -257,7 +256,7 @@ class ResolvedState {
     if constexpr (!has_friction && RegularPart::active) regular_.respond(result_.load);
     if constexpr (RegularPart::active) residual_.near_field_only = regular_.is_left_out();
     residual_.iterations += left.iterations;
-    residual_.relative = left.norm * static_cast<float>(force.params().tolerance) / tolerance;
+    residual_.relative = left.norm * static_cast<float>(force.params().tolerance) / left.tolerance;
   }
   void displace(const auto& loads, auto&& u) noexcept {
     system_.displace(loads, u);
@@ -283,6 +282,7 @@ class ResolvedState {
     const std::size_t n = size();
     std::size_t next = 0;
     bool more = again;
+    const bool none_loaded = !(std::reduce(pressure_.q.data(), pressure_.q.data() + n) > 0);
     for (std::uint32_t c = 0; c < touching_.size(); ++c) {
       if (next < n && inside_[next] == c) {
         ++next;
@@ -290,8 +290,8 @@ class ResolvedState {
       }
       const Touching& at = touching_[c];
       Point& p = points_[at.point];
-      // Gaps change little in a tick: each is looked at in every eighth.
-      if ((tick_ + at.point) % 8 != 0) continue;
+      // Gaps change little in a tick: each is looked at in every eighth, but where no other point is left.
+      if ((tick_ + at.point) % 8 != 0 && !none_loaded) continue;
       const Vec3<float> m = system_.direction_at(at.x, at.m);
       float depth = at.depth / m.dot(at.m);
       const Vec3<float> foot = at.x - depth * m;

@@ -4,7 +4,7 @@
 /// @file From static to sliding friction where a whole contact breaks away.
 
 #include <palpate/core/scalar.hpp>
-#include <palpate/resolved/detail/convex_problem.hpp>
+#include <palpate/resolved/detail/friction_problem.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
 
 #include <algorithm>
