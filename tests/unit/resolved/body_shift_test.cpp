@@ -140,6 +140,30 @@ TEST_CASE("a rod that bends by a thousand times its dent: with friction solved, 
   CHECK(most <= 30);  // measured: 9; without C the bound, 50, twice in a tick
 }
 
+TEST_CASE("a solve that is cut short while the body has given way by far more than the dent is not astray") {
+  using Elastic = ElasticContact<double, ResponseCompliance>;
+  const V rod(thick, 0.06, thick);
+  OnBlock<ResponseCompliance, CoulombFriction<double>> body(
+      {.object = standing_block(rod),
+       .tool = ToolPoints<double>(cap_samples(R, 2e-3, 3e-4), {.contact_area = 1e-4}),
+       .force = Elastic({.compliance = block_compliance(rod, 150), .iterations = 1}),
+       .friction = CoulombFriction<double>({.mu_static = 0.3, .mu_dynamic = 0.3})});
+  int unsolved = 0, astray = 0;
+  const auto tick = [&](double deep, const V& aside) {
+    Pose<double> X = against_wall(deep);
+    X.translation += V(0, 0.015, 0) + aside;
+    const Status status = body.tick(X, 1e-3).status;
+    unsolved += has(status, Status::unconverged), astray += has(status, Status::near_field_only);
+  };
+  constexpr int steps = 250;
+  constexpr double deepest = 1.25 * thick;
+  for (int i = 1; i <= steps; ++i) tick(deepest * i / steps, V::Zero());
+  // It jumps by far more than the dent is deep, which leaves as much in the one iteration.
+  for (int i = 1; i <= steps; ++i) tick(deepest, V(0, i / 10 % 2 ? 2e-3 : 0, i / 5 % 2 ? 1e-3 : 0));
+  CHECK(unsolved > 0);  // 240 of 500 ticks; against the dent alone 230 would end on the half-space
+  CHECK(astray == 0);
+}
+
 TEST_CASE("where a tool touches at two places the body is shifted by no more than either has given way") {
   using Shift = detail::BodyShift<double, false>;
   constexpr std::size_t capacity = 16;

@@ -6,7 +6,7 @@
 
 #include <support/check.hpp>
 
-#include <cmath>
+#include <algorithm>
 
 using namespace palpate;
 using detail::VectorList;

@@ -32,7 +32,8 @@ struct Remainder {
 /// How well a tick has met the conditions of contact.
 struct Residual {
   int iterations = 0;
-  float relative = 0;            ///< norm of what violates them, over the norm of the depths
+  /// Norm of what violates them, over the norm of the depths, or over what rounding allows if that is more.
+  float relative = 0;
   bool near_field_only = false;  ///< the body's regular part is left out: Status::near_field_only
 };
 
