@@ -11,7 +11,7 @@
 #include <palpate/geometry/mesh_surface.hpp>
 #include <palpate/geometry/sphere.hpp>
 
-#include <support/meshes.cpp>  // with what it compiles once: a target is one file
+#include <support/meshes.hpp>
 
 namespace {
 using namespace palpate;

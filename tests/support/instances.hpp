@@ -7,7 +7,6 @@
 #include <palpate/contact/pressure_sum.hpp>
 #include <palpate/contact/region_sum.hpp>
 #include <palpate/detection/candidates_from.hpp>
-#include <palpate/detection/tool_points.hpp>
 #include <palpate/geometry/box.hpp>
 #include <palpate/geometry/cylinder.hpp>
 #include <palpate/geometry/ellipsoid.hpp>
@@ -32,10 +31,7 @@
                                                                      S*, S*) const noexcept;               \
   instance Moved<S> DisplacementField<PhongInterpolation<S>, AreaNeighbourhood<S>>::write(                 \
       std::span<const ContactDisplacement<S>>, std::span<const Vec3<S>>, const VertexBuffer<S>&) noexcept; \
-  instance class TriangleMesh<S>;                                                                          \
-  instance MeshReport inspect<S>(const MeshData<S>&);                                                      \
   instance class TriangleBvh<S>;                                                                           \
-  instance class ToolPoints<S>;                                                                            \
   instance class LeafSum<S>;                                                                               \
   instance class PressureSum<S>;                                                                           \
   instance class DisplacementField<PhongInterpolation<S>, AreaNeighbourhood<S>>;

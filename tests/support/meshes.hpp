@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Closed meshes for tests, and a slow, independent answer to what is closest and what is inside. The
-/// set-up of a mesh as an elastic object, which costs much to compile, is compiled once: in meshes.cpp.
+/// @file  Closed meshes for tests, and a slow, independent answer to what is closest and what is inside.
 
 #include <palpate/geometry/box.hpp>
 #include <palpate/geometry/ellipsoid.hpp>
@@ -16,15 +15,6 @@
 #include <set>
 #include <utility>
 #include <vector>
-
-namespace palpate {
-#ifndef PALPATE_TEST_MESHES
-#define PALPATE_TEST_MESHES extern template
-#endif
-PALPATE_TEST_MESHES MeshSurface<float>::MeshSurface(const TriangleMesh<float>&, const Params&);
-PALPATE_TEST_MESHES MeshSurface<double>::MeshSurface(const TriangleMesh<double>&, const Params&);
-#undef PALPATE_TEST_MESHES
-}  // namespace palpate
 
 namespace palpate::test {
 

@@ -14,6 +14,12 @@ namespace palpate {
 template <class S>
 concept Real = std::floating_point<S>;
 
+namespace detail {
+/// double, or long double for long double.
+template <Real S>
+using Wide = decltype(S{} + double{});
+}  // namespace detail
+
 /// True unless x is NaN or infinite. No equation. Tests the exponent's bits, because `std::isfinite` is
 /// folded to `true` under -ffast-math, which game engines use, and a NaN must never reach a motor.
 template <Real S>

@@ -44,28 +44,7 @@ class TriangleBvh {
     S t = (std::numeric_limits<S>::max)();
   };
 
-  explicit TriangleBvh(const MeshData<S>& mesh) : vertices_(mesh.vertices), triangles_(mesh.triangles) {
-    const std::size_t n = triangles_.size();
-    if (n == 0) fail("TriangleBvh", "needs at least one triangle");
-    if (n > 1000000000u) fail("TriangleBvh", "takes at most 1e9 triangles", static_cast<double>(n));
-    for (std::size_t t = 0; t < n; ++t)
-      for (const std::uint32_t v : triangles_[t])
-        if (v >= vertices_.size())
-          fail_at("TriangleBvh", "vertex does not exist", "triangle", t, static_cast<double>(v));
-    for (std::size_t v = 0; v < vertices_.size(); ++v)
-      if (!usable(vertices_[v]))
-        fail_at("TriangleBvh", "position must be finite and below 1e6 m", "vertex", v);
-    std::vector<Box> boxes(n);
-    Box all;
-    for (std::size_t t = 0; t < n; ++t) {
-      for (const std::uint32_t v : triangles_[t]) boxes[t].add(vertices_[v], vertices_[v]);
-      all.add(boxes[t].low, boxes[t].high);
-    }
-    origin_ = all.low + (all.high - all.low) / S(2);
-    nodes_ = std::move(detail::BvhBuild<S>(boxes).nodes);
-    link();
-    refit_all();
-  }
+  explicit TriangleBvh(const MeshData<S>& mesh);
 
   /// The point of the mesh closest to x; the first found of equal ones. A good `start` triangle saves much of
   /// the work.
@@ -386,3 +365,7 @@ class TriangleBvh {
 };
 
 }  // namespace palpate
+
+#ifndef PALPATE_COMPILED
+#include <palpate/geometry/setup/bvh_impl.hpp>
+#endif

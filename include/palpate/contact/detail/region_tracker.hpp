@@ -5,6 +5,7 @@
 
 #include <palpate/contact/region_slot.hpp>
 #include <palpate/core/status.hpp>
+#include <palpate/detection/detail/point_grid.hpp>
 #include <palpate/detection/detail/proximity_graph.hpp>
 
 #include <algorithm>

@@ -5,6 +5,11 @@
 
 #include <palpate/detection/tool_points.hpp>
 
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
 namespace palpate {
 
 /// Joins the points of a tool that are strictly nearer than r; r to rounding is not. The tool is rigid, so
@@ -20,27 +25,7 @@ class ProximityGraph {
  public:
   static constexpr std::size_t max_mean_neighbours = 64;
 
-  ProximityGraph(const ToolPoints<S>& tool, S distance) {
-    require_positive(distance, "ProximityGraph", "distance r [m] must be > 0");
-    detail::PointGrid<S> grid(tool.points(), distance);
-    for (const Vec3<S>& p : tool.points()) grid.insert(p);
-    start_.reserve(tool.size() + 1);
-    start_.push_back(0);
-    for (std::uint32_t i = 0; i < tool.size(); ++i) {
-      const auto first = static_cast<std::ptrdiff_t>(neighbours_.size());
-      grid.for_each_near(tool.point(i), [&](std::uint32_t j, S) {
-        if (j != i) neighbours_.push_back(j);
-      });
-      if (neighbours_.size() > max_mean_neighbours * tool.size()) {
-        fail("ProximityGraph",
-             "distance r [m] joins more than 64 points to each on average; take a smaller r or points "
-             "further apart",
-             static_cast<double>(distance));
-      }
-      std::sort(neighbours_.begin() + first, neighbours_.end());
-      start_.push_back(static_cast<std::uint32_t>(neighbours_.size()));
-    }
-  }
+  ProximityGraph(const ToolPoints<S>& tool, S distance);
 
   /// The points nearer to point i than r, in order, without i.
   [[nodiscard]] std::span<const std::uint32_t> neighbours(std::uint32_t i) const noexcept {
@@ -53,3 +38,7 @@ class ProximityGraph {
 };
 
 }  // namespace palpate
+
+#ifndef PALPATE_COMPILED
+#include <palpate/detection/setup/proximity_graph_impl.hpp>
+#endif

@@ -5,6 +5,7 @@
 
 #include <palpate/core/vector.hpp>
 #include <palpate/detection/detail/point_grid.hpp>
+#include <palpate/detection/surface_samples.hpp>
 #include <palpate/geometry/detail/mesh_parts.hpp>
 
 #include <algorithm>
@@ -13,18 +14,7 @@
 #include <span>
 #include <vector>
 
-namespace palpate {
-
-/// Points on a surface and the area that each stands for; #points = #areas.
-template <Real S>
-struct SurfaceSamples {
-  std::vector<Vec3<S>> points;  ///< [m]
-  std::vector<S> areas;         ///< sums to the surface's area [m^2]
-  std::vector<Vec3<S>>
-      vector_areas;  ///< outward normal times area, summed over its part [m^2]; empty: unknown
-};
-
-namespace detail {
+namespace palpate::detail {
 
 /// The vector area of each sample: every element's is shared among the samples around it that lie near its
 /// plane and look its way, by the weights nearest to a kernel's that have the sum 1 and the element's middle
@@ -143,6 +133,4 @@ template <Real S, class ForEach>
   return samples;
 }
 
-}  // namespace detail
-
-}  // namespace palpate
+}  // namespace palpate::detail

@@ -10,10 +10,6 @@
 
 namespace palpate::detail {
 
-/// double, or long double for long double.
-template <Real S>
-using Wide = decltype(S{} + double{});
-
 /// Solid angle of triangle (a, b, c) seen from the origin, over 4 pi; positive when it is seen from inside.
 /// Source: [vanoosterom1983].
 template <Real S>

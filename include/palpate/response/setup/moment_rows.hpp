@@ -5,7 +5,9 @@
 /// (moment_loads.hpp). Set-up only.
 
 #include <palpate/response/setup/constants.hpp>
-#include <palpate/response/tick/patch_table.hpp>
+#include <palpate/response/tick/influence_functions.hpp>
+#include <palpate/response/tick/load_mesh.hpp>
+#include <palpate/response/tick/moment_loads.hpp>
 
 #include <algorithm>
 #include <numbers>

@@ -6,6 +6,7 @@
 
 #include <palpate/core/cholesky.hpp>
 #include <palpate/core/error.hpp>
+#include <palpate/core/vector.hpp>
 #include <palpate/response/setup/constants.hpp>
 
 #include <array>

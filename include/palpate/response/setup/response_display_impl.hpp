@@ -4,6 +4,7 @@
 /// @file Set-up of response_display.hpp: vertices sorted by the element they lie on. Set-up only.
 
 #include <palpate/core/error.hpp>
+#include <palpate/core/simd_shuffle.hpp>
 #include <palpate/geometry/bvh.hpp>
 #include <palpate/response/response_display.hpp>
 
