@@ -58,6 +58,7 @@ struct HandScript {
   Play play;
   PlayGround ground;
   double grip = 1;
+  double wait = 0;  ///< at rest for so much longer, before it is looked at [s]
 
   [[nodiscard]] HandTarget operator()(double t) const {
     constexpr double pi = std::numbers::pi;
@@ -80,7 +81,7 @@ struct HandScript {
         }
         break;
       case Play::press:
-        move(0.2, 0.5, -25e-3), move(2, 2.3, 25e-3);
+        move(0.2, 0.5, -25e-3), move(2 + wait, 2.3 + wait, 25e-3);
         break;
       case Play::let_go:
         move(0.2, 0.5, -25e-3);
@@ -90,7 +91,7 @@ struct HandScript {
         held = 0;
         break;
       default:
-        move(0.1, 0.3, -15e-3), move(3, 3.2, 15e-3);
+        move(0.1, 0.3, -15e-3), move(3 + wait, 3.2 + wait, 15e-3);
         to_and_fro(0.3);
     }
     HandTarget target{
@@ -126,7 +127,9 @@ inline constexpr int vibrates_from = 4;
 template <class Control>
 [[nodiscard]] PlayFigures play(const LoopDevice& device, const LoopHand& hand, const HandScript& script,
                                Control&& control, double toss = 0) {
-  const PlayTimes times = times_of(script.play);
+  PlayTimes times = times_of(script.play);
+  if (times.rest_to > 0)
+    times.rest_from += script.wait, times.rest_to += script.wait, times.end += script.wait;
   const PlayGround& ground = script.ground;
   ClosedLoop loop(device, hand, ground.at + 5e-3 * ground.normal,
                   script.play == Play::toss ? Vec3<double>(-toss * ground.normal) : Vec3<double>::Zero());
