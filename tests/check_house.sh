@@ -101,6 +101,21 @@ trap 'rm -f "$report"' EXIT
     grep -E "(^|[^0-9.])$(echo "$version" | sed 's/[.]/[.]/g')([^0-9.]|\$)" |
     sed 's/$/: the version is stated in version.hpp alone/' || true
 
+  # Mutants by hand name lines that are there.
+  if [ -f tests/mutants/by_hand.txt ]; then
+    awk '
+      /^#/ || /^[+]/ || /^$/ { next }
+      /^- / {
+        line = substr($0, 3); found = 0
+        while ((getline code < path) > 0) { gsub(/^[ \t]+|[ \t]+$/, "", code); found += code == line }
+        close(path)
+        if (found != 1) print FILENAME ":" FNR ": " path " has this line " found " times"
+        next
+      }
+      { path = "include/palpate/" $0 }
+    ' tests/mutants/by_hand.txt
+  fi
+
   # How tests compare.
   grep -rnE --include='*.hpp' --include='*.cpp' 'doctest::Approx|[^a-zA-Z_]Approx[(]' tests |
     sed 's/$/: CHECK_RELATIVE or CHECK_ABSOLUTE, with a tolerance that says why/' || true

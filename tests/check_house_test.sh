@@ -83,6 +83,12 @@ expect 'CHECK_RELATIVE or CHECK_ABSOLUTE'
 echo 'std::mt19937 random(std::random_device{}());' >tests/bad_test.cpp
 expect 'seeded generators only'
 rm tests/bad_test.cpp
+mkdir tests/mutants
+printf 'core/good.hpp\n- static constexpr int answer = 42;\n+ static constexpr int answer = 43;\n' >tests/mutants/by_hand.txt
+"$check" . || { echo "FAILED: a mutant of a line that is there is refused"; failures=1; }
+printf -- '- static constexpr int answer = 41;\n+\n' >>tests/mutants/by_hand.txt
+expect 'core/good.hpp has this line 0 times'
+rm -r tests/mutants
 printf '@book{known2000,\n}\n' >>docs/references.bib
 expect 'known2000 is there twice'
 exit $failures

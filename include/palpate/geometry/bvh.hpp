@@ -3,7 +3,6 @@
 
 /// @file  Tree of boxes over a triangle mesh: closest point, ray and ball; follows vertices that move.
 
-#include <palpate/core/error.hpp>
 #include <palpate/geometry/concept.hpp>
 #include <palpate/geometry/detail/bvh_build.hpp>
 #include <palpate/geometry/detail/triangle_query.hpp>

@@ -3,13 +3,11 @@
 
 /// @file  A triangle mesh that has been checked: closed, oriented, finite, every triangle with area.
 
-#include <palpate/core/error.hpp>
 #include <palpate/geometry/mesh_report.hpp>
 
-#include <Eigen/Geometry>
-
-#include <cmath>
-#include <utility>
+#include <array>
+#include <cstdint>
+#include <vector>
 
 namespace palpate {
 
