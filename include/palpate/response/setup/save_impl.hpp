@@ -3,6 +3,7 @@
 
 /// @file Definitions of save.hpp. Set-up only.
 
+#include <palpate/core/error.hpp>
 #include <palpate/response/save.hpp>
 
 #include <algorithm>
