@@ -17,7 +17,7 @@ set(generated ${CMAKE_CURRENT_BINARY_DIR}/generated)
 file(CONFIGURE OUTPUT ${generated}/all_headers.hpp CONTENT "#pragma once\n${include_all}" @ONLY)
 
 # Each header alone, in two forms. The thorough form (tests/run --thorough) is the whole check: a file for each
-# header, with exceptions and without. The usual form has a file for each folder, with Eigen parsed already and
+# header, header-only, and against the compiled set-up without exceptions. The usual form has a file for each folder, with Eigen parsed already and
 # without what only the set-up of a response field needs: a tenth of the time. Headers that include least come
 # first there, so that few stand behind what they forgot. It cannot see an include that another header of the
 # folder brought before, nor one of Eigen's. Force laws stay free of Eigen, which is most of a user's compile
@@ -74,7 +74,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   palpate_headers_alone(palpate_test_headers sources_by_folder -DPALPATE_COMPILED)
   target_precompile_headers(palpate_test_headers PRIVATE <Eigen/Core> <Eigen/Geometry>)
   palpate_headers_alone(palpate_test_headers_thorough sources_alone)
-  palpate_headers_alone(palpate_test_headers_noexcept sources_alone -fno-exceptions -fno-rtti)
+  palpate_headers_alone(palpate_test_headers_noexcept sources_alone -fno-exceptions -fno-rtti -DPALPATE_COMPILED)
   add_custom_target(palpate_test_thorough DEPENDS palpate_test_headers_thorough palpate_test_headers_noexcept)
   set_target_properties(palpate_test_headers_thorough palpate_test_headers_noexcept
     PROPERTIES EXCLUDE_FROM_ALL ON)

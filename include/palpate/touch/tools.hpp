@@ -14,6 +14,7 @@
 /// A capsule's half then has 256 points, as many as Touch takes beneath the surface. An end's contact area is
 /// that where it is in by a quarter of its radius: it has 10 points at least.
 
+#include <palpate/core/error.hpp>
 #include <palpate/core/pose.hpp>
 #include <palpate/geometry/triangle_mesh.hpp>
 
