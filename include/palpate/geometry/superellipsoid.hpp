@@ -66,6 +66,9 @@ class Superellipsoid {
     Vec3<S> r = x - p_.centre;
     if (!is_finite(r))
       return detail::nowhere<S>(p_.centre + Vec3<S>(p_.axes.x(), S(0), S(0)), Vec3<S>::UnitX());
+    // Numbers near the least normal one lose their digits when they are multiplied.
+    constexpr S tiny = (std::numeric_limits<S>::min)() / std::numeric_limits<S>::epsilon();
+    for (S& c : r) c = std::abs(c) < tiny ? S(0) : c;
     // Beyond this the closest point depends on the direction only, to rounding.
     const S limit = S(1e3) / std::numeric_limits<S>::epsilon() * p_.axes.maxCoeff();
     const S size = r.cwiseAbs().maxCoeff();

@@ -139,6 +139,25 @@ TEST_CASE_TEMPLATE("superellipsoid: a ball over the flat is as far as the flat",
   CHECK(!body.separated(far, S(4.02)));
 }
 
+TEST_CASE_TEMPLATE("superellipsoid: coordinates next to zero have a closest point and a depth", S, float,
+                   double) {
+  const S least = (std::numeric_limits<S>::min)();
+  for (const S e1 : {S(0.1), S(0.5), S(1)})
+    for (const S e2 : {S(0.1), S(0.3), S(1)}) {
+      const Superellipsoid<S> body({.axes = {S(0.3), S(1), S(1)}, .e1 = e1, .e2 = e2});
+      for (const S x : {S(0), least / S(1000), least * S(3), least * S(1e9)})
+        for (const S y : {least / S(1000), least / S(3), least * S(1e12)})
+          for (const S z : {S(-12256), S(-2), S(0.9), S(0)})
+            for (const Vec3<S>& at : {Vec3<S>(x, y, z), Vec3<S>(z, x, y), Vec3<S>(y, z, x)}) {
+              const auto foot = body.closest(at);
+              CHECK(is_finite(foot.position));
+              CHECK(is_finite(foot.normal));
+              CHECK(is_finite(foot.distance));
+              CHECK(is_finite(body.penetration(at).gradient));
+            }
+    }
+}
+
 TEST_CASE("superellipsoid: bad exponents and ratios are refused by name and value") {
   const auto refusal = [](const Superellipsoid<double>::Params& params) -> std::string {
     try {
