@@ -9,8 +9,8 @@ install(TARGETS palpate EXPORT palpate-targets INCLUDES DESTINATION ${CMAKE_INST
 set(arch_independent ARCH_INDEPENDENT)
 set(PALPATE_FIND_THREADS "")
 if(PALPATE_INSTALL_COMPILED)
-  install(TARGETS palpate_compiled palpate_compiled_response palpate_compiled_mesh EXPORT palpate-targets
-    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  list(TRANSFORM compiled_names PREPEND palpate_ OUTPUT_VARIABLE compiled_targets)
+  install(TARGETS ${compiled_targets} EXPORT palpate-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   set(arch_independent "")
   if(TARGET Threads::Threads)
     set(PALPATE_FIND_THREADS "find_dependency(Threads)")

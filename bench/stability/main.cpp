@@ -311,7 +311,8 @@ int main(int argc, char** argv) {
                   device.device.jitter = t.jitter, device.device.lost = t.lost, device.device.seed = seed;
                   const PlayFigures f = run(chain, {play, K, t.rate, delay, grip}, device, wait);
                   most = (std::max)(most, f.turns);
-                  if (s == 1 && play == Play::press) sum += felt(f, K), ++presses;
+                  if (chain == Chain::passivity && wait == 0 && play == Play::press)
+                    sum += felt(f, K), ++presses;
                 }
             vibrating[s] += most >= test::vibrates_from;
           }

@@ -63,12 +63,9 @@ class Superellipsoid {
 
   /// Closest point of the surface.
   [[nodiscard]] SurfacePoint<S> closest(const Vec3<S>& x) const noexcept {
-    Vec3<S> r = x - p_.centre;
+    const Vec3<S> r = x - p_.centre;
     if (!is_finite(r))
       return detail::nowhere<S>(p_.centre + Vec3<S>(p_.axes.x(), S(0), S(0)), Vec3<S>::UnitX());
-    // Numbers near the least normal one lose their digits when they are multiplied.
-    constexpr S tiny = (std::numeric_limits<S>::min)() / std::numeric_limits<S>::epsilon();
-    for (S& c : r) c = std::abs(c) < tiny ? S(0) : c;
     // Beyond this the closest point depends on the direction only, to rounding.
     const S limit = S(1e3) / std::numeric_limits<S>::epsilon() * p_.axes.maxCoeff();
     const S size = r.cwiseAbs().maxCoeff();
@@ -315,7 +312,10 @@ class Superellipsoid {
   }
 
   // r in the positive octant, relative to the centre.
-  [[nodiscard]] Foot solve(const Vec3<S>& r) const noexcept {
+  [[nodiscard]] Foot solve(Vec3<S> r) const noexcept {
+    // Numbers near the least normal one lose their digits when they are multiplied.
+    constexpr S tiny = (std::numeric_limits<S>::min)() / std::numeric_limits<S>::epsilon();
+    for (S& c : r) c = c < tiny ? S(0) : c;
     const Vec3<S> z = r.cwiseQuotient(p_.axes);
     Vec3<S> start = p_.axes;
     S nearest = (std::numeric_limits<S>::max)();
