@@ -69,20 +69,22 @@ void require_sound(const Solver& solver, const typename Solver::State& state,
             "the contacts' forces are the wrench's");
 }
 
-template <class Solver>
-void walk(Solver& solver, const Scene& scene, Bytes& in) {
+/// Through a body of this size [m]. `before(state, in)`: ahead of each tick; `sound(solver, state, X, is_step,
+/// result)`: what must hold after it.
+template <class Solver, class Before, class Sound>
+void walk(Solver& solver, double size, Bytes& in, const Before& before, const Sound& sound) {
   using S = typename Solver::Scalar;
   using State = typename Solver::State;
   static State state = solver.initial_state(), saved = state, again = state;
   state.reset(), saved.reset();
   Pose<S> X;
-  X.translation = S(1.2 * scene.size) * Vec3<S>::UnitY();
+  X.translation = S(1.2 * size) * Vec3<S>::UnitY();
   S dt = S(1e-3);
   for (int k = 0; k < 200 && !in.empty(); ++k) {
     const std::uint8_t op = in.byte();
     switch (op % 16) {
       case 0: {  // onto the surface, or into it
-        X.translation = in.units<S>() * S(scene.size);
+        X.translation = in.units<S>() * S(size);
         break;
       }
       case 1:
@@ -121,8 +123,9 @@ void walk(Solver& solver, const Scene& scene, Bytes& in) {
         break;
       }
       default:  // a short step
-        X.translation += in.units<S>() * S(scene.size) * (op & 16 ? S(1e-3) : S(0.05));
+        X.translation += in.units<S>() * S(size) * (op & 16 ? S(1e-3) : S(0.05));
     }
+    before(state, in);
     again = state;
     TickResult<S> first, second;
     {
@@ -131,7 +134,7 @@ void walk(Solver& solver, const Scene& scene, Bytes& in) {
       second = solver.evaluate(X, dt, again);
     }
     require_same(first, second);
-    require_sound(solver, state, X, is_finite(dt) && dt > S(0), first, scene);
+    sound(solver, state, X, is_finite(dt) && dt > S(0), first);
     if (op & 128) {  // where the object has a pose: action is reaction
       Pose<S> object;
       object.translation = in.numbers<S>();
@@ -141,6 +144,13 @@ void walk(Solver& solver, const Scene& scene, Bytes& in) {
       require((world.object.force + world.tool.force).isZero(S(0)), "reaction is minus action");
     }
   }
+}
+
+template <class Solver>
+void walk(Solver& solver, const Scene& scene, Bytes& in) {
+  walk(
+      solver, scene.size, in, [](const auto&, const Bytes&) {},
+      [&scene](const auto&... tick) { require_sound(tick..., scene); });
 }
 
 /// The first byte chooses the walk.

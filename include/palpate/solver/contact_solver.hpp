@@ -48,8 +48,7 @@ namespace palpate {
 /// | wrench    | `Acting`      | AtContact, AtMassCentre                             | `AtContact`          |
 /// | coupling  | `Coupling`    | the couplings of contact/coupling.hpp (section VI)  | the deformation's    |
 ///
-/// Slip and skew rules belong to the friction law, mass sharing to the topology. An absent policy is a type
-/// and costs no byte and no instruction.
+/// Slip and skew rules belong to the friction law, sharing to the topology. An absent policy costs nothing.
 ///
 /// Real time: tick(), evaluate() and draw() are noexcept, take no heap, lock or I/O, and a tick's time is
 /// bounded by the tool's points. Same poses, same bits. From the third tick on at one pose the last result
@@ -236,8 +235,7 @@ class ContactSolver {
   static constexpr bool is_relieved = std::derived_from<Sum, detail::RelievedSum<S>>;
 
   TickResult<S> step(const Pose<S>& X, [[maybe_unused]] S dt, Status status, State& state) const noexcept {
-    // The second tick at a pose settles what the motion into it left (slip, rate); after that nothing
-    // changes.
+    // The second tick at a pose settles what the motion into it left (slip, rate); later ones change nothing.
     auto& last = state.last_;
     const bool again = last.ticks > 0 && same_bits(X, last.pose);
     bool settled = again && last.ticks > 1 && !has_memory;
@@ -310,7 +308,9 @@ class ContactSolver {
         // Of the tool's point at the pressure centre. Differences of depths would jump when regions merge.
         const S gone_in = state.poses_.rate(X.to_tool(sum.centre()), normal, rate_);
         const S rate = (std::min)(gone_in, sum.deepest / dt);  // no deeper than it came
-        const S total = (std::max)(normal_force + (force_.force(depth, rate) - force_.force(depth)), S(0));
+        S total = (std::max)(normal_force + (force_.force(depth, rate) - force_.force(depth)), S(0));
+        // A finite force has a finite square, of which areas are made: in next to no time it may have none.
+        if (!is_finite(total * total)) total = std::numeric_limits<S>::infinity();
         sum.scale(total / normal_force);
         normal_force = total;
       }
@@ -334,7 +334,7 @@ class ContactSolver {
                                                 depth, normal_force, memory.twist, disc);
       if (anchored.normal_force != normal_force && normal_force > S(0))
         sum.scale(anchored.normal_force / normal_force);
-      memory.friction = anchored.friction;
+      memory.friction = anchored.friction, memory.normal_force = anchored.normal_force;
       memory.depth = depth;
       contact.mode = memory.anchor.slip.sliding ? ContactMode::sliding : ContactMode::sticking;
       contact.centre = anchored.at;

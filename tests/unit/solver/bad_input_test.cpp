@@ -285,6 +285,31 @@ TEST_CASE("bad input: relaxation") {
       SinglePoint{}, dry);
 }
 
+TEST_CASE("a rate term after a step of next to no time: a contact that is finite, or no force and a status") {
+  using Damped = DampedForce<LinearForce<double>, Viscous>;
+  ContactSolver<Ellipsoid<double>, Damped, CoulombFriction<double>, SingleRegion<AreaSharing>> touch(
+      {.object = egg,
+       .tool = face(7, 1e-3, 4e-5),
+       .force = Damped(spring, {.damping = 0.5}),
+       .friction = dry});
+  int refused = 0;
+  for (double dt = 1e-3; dt > 0; dt /= 10) {
+    touch.reset();
+    (void)touch.tick(at(0.001, 0.0385, 0), ms);
+    const TickResult<double> felt = touch.tick(at(0.001, 0.038, 0), dt);
+    INFO("dt ", dt);
+    CHECK(is_finite(felt.wrench.force));
+    if (has(felt.status, Status::non_finite_result)) {
+      ++refused;
+      CHECK(felt.wrench.force == V::Zero());
+      continue;
+    }
+    CHECK(felt.wrench.force.y() > 0);
+    for (const ContactState<double>& c : touch.contacts()) CHECK(is_finite(c.area));
+  }
+  CHECK(refused > 0);
+}
+
 TEST_CASE("docs/stability.md has these rows and no others") {
   std::ifstream page(std::filesystem::path(__FILE__).parent_path() / "../../../docs/stability.md");
   REQUIRE(page.is_open());

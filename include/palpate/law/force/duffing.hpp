@@ -165,8 +165,8 @@ class DuffingForce {
     if (!(start > S(0) && start <= (std::numeric_limits<S>::max)())) return start;  // out of the range
     // Products may exceed F a little; halved coefficients have the same root.
     const S half = force > (std::numeric_limits<S>::max)() / S(2) ? S(0.5) : S(1), F = half * force;
-    const S a = half * p_.c1 * start / F;
-    const S b = half * p_.c3 * start * start * start / F;
+    const S a = p_.c1 * (half * start) / F;  // half of a subnormal c1 or c3 may be 0
+    const S b = p_.c3 * (half * start) * start * start / F;
     S y = linear ? S(1.0103) + b * (S(-0.8353) + b * (S(0.8643) - b * S(0.3541)))  // a = 1
                  : (S(0.9979) - S(0.319) * a) * (S(1) - (b - S(1)) / S(3));        // b = 1
     constexpr int steps = std::numeric_limits<S>::digits > 53 ? 3 : 2;

@@ -30,14 +30,15 @@ template <class Skew, ForceLaw L, Real S = typename L::Scalar>
 /// plasticity).
 ///
 ///     stick:  F_ct(D_t) <= f_max(F_cn)
-///     slip:   F_ct(D_t) = s f_slide(F_cn),  s = f_max/f_slide at breakaway, s -> 1 as the tool travels on
+///     slip:   F_ct(D_t) = f_slide + s (f_max - f_slide),  s = 1 at breakaway, s -> 0 as the tool travels on
 ///
 /// No equation: reading of IV.B. The printed drop from f_max to mu_D F_cn at breakaway is a force jump; here
-/// it is spread over the tool's travel, s - 1 falling by travel/|D_t| per tick, so that friction never
-/// changes faster than the law's stiffness times the motion. Full static strength returns when the tool has
-/// gone back by a tenth of the stretch: not in each tick without motion, or the steps of an encoder would
-/// make every slow slide stick and slip. Since p0 only moves so as to shorten D_t, the elastic energy only
-/// falls in a slip: friction never does positive work on the user.
+/// it is spread over the tool's travel, s falling by s travel/|D_t| per tick, so that friction never changes
+/// faster than the law's stiffness times the motion. s is a share of the difference, not a factor: where the
+/// load changes meanwhile, so does f_max/f_slide, and f_max must not be passed. Full static strength returns
+/// when the tool has gone back by a tenth of the stretch: not in each tick without motion, or the steps of an
+/// encoder would make every slow slide stick and slip. Since p0 only moves so as to shorten D_t, the elastic
+/// energy only falls in a slip: friction never does positive work on the user.
 struct ReturnMapping {
   static constexpr bool shifts_by_travel = false;
 
@@ -46,10 +47,13 @@ struct ReturnMapping {
                                              const SlipTrial<S>& trial, SlipState<S>& state) noexcept {
     constexpr S rest = S(0.9);  // gone back by a tenth of the stretch
     const SkewedForce<S> stuck = skew.force(law, trial.depth, trial.normal_force, trial.stretch);
-    const auto limit = [&](S normal_force) {
-      return state.strength *
-             (state.sliding ? friction.sliding_limit(normal_force) : friction.static_limit(normal_force));
+    const auto of_law = [&](S normal_force) {
+      if (!state.sliding) return friction.static_limit(normal_force);
+      const S sliding = friction.sliding_limit(normal_force);
+      if (!(state.static_share > S(0))) return sliding;
+      return sliding + state.static_share * (friction.static_limit(normal_force) - sliding);
     };
+    const auto limit = [&](S normal_force) { return state.strength * of_law(normal_force); };
     const auto settle = [&] {
       if (state.springs > S(1)) {
         const S f_max = limit(stuck.normal);
@@ -61,28 +65,25 @@ struct ReturnMapping {
         return state.springs > S(1) ? f_max / state.springs : f_max;
       });
     };
-    const auto static_over_sliding = [&](S stretch) {
-      const S normal = skew.force(law, trial.depth, trial.normal_force, stretch).normal;
-      const S sliding = friction.sliding_limit(normal);
-      return sliding > S(0) ? friction.static_limit(normal) / sliding : S(1);
-    };
     if (state.sliding && trial.stretch < rest * state.slid) {  // full static strength returns
+      const S normal = skew.force(law, trial.depth, trial.normal_force, trial.before).normal;
+      const S f_max = friction.static_limit(normal);
+      state.strength = f_max > S(0) ? (std::max)(S(1), limit(normal) / f_max) : S(1);
       state.sliding = false;
-      state.strength = (std::max)(S(1), state.strength / static_over_sliding(trial.before));
-      state.slid = S(0);
+      state.static_share = state.slid = S(0);
     }
     const S springs = state.springs;
     S stretch = settle();
     if (!state.sliding && (stretch < trial.stretch || state.springs < springs)) {
       state.sliding = true;
-      // A sliding limit next to nothing must not make the ratio infinite.
-      state.strength =
-          (std::min)(state.strength * static_over_sliding(stretch), S(1) / (std::numeric_limits<S>::min)());
+      state.static_share = S(1);
       state.slid = S(0);
     }
-    if (state.strength > S(1) && stretch > S(0)) {
+    if ((state.strength > S(1) || state.static_share > S(0)) && stretch > S(0)) {
       const S left = (std::max)(S(0), S(1) - trial.travel / stretch);
       state.strength = S(1) + (state.strength - S(1)) * left;
+      state.static_share *= left;
+      if (!(state.static_share > std::numeric_limits<S>::epsilon())) state.static_share = S(0);
       stretch = settle();
     }
     state.slid = stretch < trial.stretch ? stretch : (std::max)(state.slid, stretch);

@@ -18,13 +18,16 @@ struct SkewedForce {
 template <Real S>
 struct SlipState {
   bool sliding = false;
-  /// Present limit over the law's (f_max while sticking, f_slide while sliding) [-], >= 1. Above 1 after
-  /// breakaway and after regions merged; falls to 1 as the tool travels on.
+  /// Present limit over the law's (f_max while sticking, f_slide + static_share (f_max - f_slide) while
+  /// sliding) [-], >= 1. Above 1 after regions merged; falls to 1 as the tool travels on.
   S strength = S(1);
   S slid = S(0);  ///< largest |D_t| since the last slip [m]
   /// Tangential springs in parallel [-], >= 1: F_ct = springs F_ct(|D_t|). Above 1 after regions merged; a
   /// slip lets the surplus go before it shortens D_t.
   S springs = S(1);
+  /// Part of f_max - f_slide that a sliding contact has still [-], in [0, 1]: 1 at breakaway, falls to 0 as
+  /// the tool travels on.
+  S static_share = S(0);
 };
 
 /// One tick's motion of the contact, as the slip rule needs it.

@@ -37,6 +37,7 @@ struct FrictionMemory {
   Anchor<S> anchor;
   PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<twists, Twist<S>, NoTwist> twist;
   Vec3<S> friction;  ///< of the last tick [N]
+  S normal_force;    ///< F_cn of the last tick [N]
   S depth;           ///< D_n of the last tick [m]
 };
 
@@ -81,7 +82,7 @@ void inherit(const Friction& law_of_friction, const Force& force, const Regions&
       continue;  // lives on unchanged
     Vec3<S> friction = Vec3<S>::Zero(), point_T = Vec3<S>::Zero(), tip = Vec3<S>::Zero(),
             normal = Vec3<S>::Zero();
-    S weight = S(0), strength = S(1), energy = S(0);
+    S weight = S(0), pressed = S(0), energy = S(0);
     [[maybe_unused]] Vec3<S> torque = Vec3<S>::Zero();  // about the origin [N m]
     bool sliding = false;
     for (std::size_t p = 0; p < N; ++p) {
@@ -102,7 +103,7 @@ void inherit(const Friction& law_of_friction, const Force& force, const Regions&
         energy += fraction * twist.about_normal() * twist.angle / S(2);
         torque += fraction * (twist.torque + before.tip.cross(last[p].friction));
       }
-      strength = (std::max)(strength, before.slip.strength);
+      pressed += fraction * last[p].normal_force;
       sliding = sliding || before.slip.sliding;
     }
     Anchor<S>& anchor = memory[k].anchor;
@@ -132,13 +133,18 @@ void inherit(const Friction& law_of_friction, const Force& force, const Regions&
       about_normal = anchor.normal.dot(torque - anchor.tip.cross(friction));
       if (lever > S(0)) joint = std::hypot(carried, about_normal / lever);
     }
-    // A merged region's limit may be below the sum of its parts' (beta < 1): the excess wears off with
-    // travel.
-    const S limit =
-        sliding ? law_of_friction.sliding_limit(normal_force) : law_of_friction.static_limit(normal_force);
-    if (limit > S(0))
-      strength = (std::max)(strength, (std::min)(joint / limit, S(1) / (std::numeric_limits<S>::min)()));
-    anchor.slip = {sliding, strength};
+    // A part that sticks carries more than one that slides, and a merged region's limit may be below the sum
+    // of its parts' (beta < 1): both wear off with travel. By the last tick's load, under which the parts
+    // bore it: by this one's, friction would stay where the load leaves.
+    S limit = law_of_friction.static_limit(pressed), static_share = S(0), strength = S(1);
+    if (sliding) {
+      const S slides = law_of_friction.sliding_limit(pressed), more = limit - slides;
+      if (joint > slides && more > S(0)) static_share = (std::min)((joint - slides) / more, S(1));
+      limit = slides + static_share * more;
+    }
+    if (joint > limit && limit > S(0))
+      strength = (std::min)(joint / limit, S(1) / (std::numeric_limits<S>::min)());
+    anchor.slip = {.sliding = sliding, .strength = strength, .static_share = static_share};
     const S stretch = carried_stretch(skew, law, depth, carried, energy, anchor.slip);
     anchor.slip.slid = stretch;
     if constexpr (twists) {

@@ -153,6 +153,7 @@ TEST_CASE("duffing inverse: extremes that break closed forms") {
       {1e-310, 1e-310, 1, 2.1544346900318843e103},  // subnormal coefficients
       {5e-324, 1, 27, 3},
       {1, 5e-324, 1, 1},
+      {1e-300, 5e-324, (std::numeric_limits<double>::max)(), 3.3136779738342708e210},
       {1e308, 1e-308, 1e308, 1},
       {1e-308, 1e308, 1e-308, 4.6415888336127788924e-206},
       {1, 1, 2, 1},

@@ -2,6 +2,7 @@
 #include <palpate/law/force/duffing.hpp>
 #include <palpate/law/force/linear.hpp>
 #include <palpate/law/friction/coulomb.hpp>
+#include <palpate/law/friction/power_law.hpp>
 #include <palpate/law/friction/slip.hpp>
 
 #include <doctest/doctest.h>
@@ -108,6 +109,27 @@ TEST_CASE("return mapping: strength that regions left is over the static limit a
   (void)push<ReturnMapping, ByComponents>(state, 0.5 * stretch, stretch, 0);
   CHECK_FALSE(state.sliding);
   CHECK_RELATIVE(state.strength, 1.5, test::ulps<double>(16));  // the same 0.9 N over 0.6 N
+}
+
+TEST_CASE("return mapping: what is left of the static limit is that of the present load") {
+  // f_max/f_slide is 2.8 at 0.2 N and 1 at 13 N, where a factor that is kept would give 10.9 N.
+  const PowerLawFriction<double> fibre({.K = 0.56, .beta = 0.75, .mu_dynamic = 0.3});
+  SlipState<double> state;
+  double stretch = 0;
+  for (const double normal_force : {0.2, 1.0, 4.0, 13.0, 1.0, 0.2}) {
+    const auto now =
+        ReturnMapping::advance(fibre, ByComponents{}, law,
+                               {law.depth(normal_force), normal_force, stretch + 0.01, stretch, 1e-9}, state);
+    stretch = now.stretch;
+    CHECK(state.sliding);
+    CHECK_RELATIVE(now.force.tangential, fibre.static_limit(normal_force), 1e-5);  // 1e-9 m of travel
+  }
+  for (int i = 0; i < 100; ++i)
+    stretch = ReturnMapping::advance(fibre, ByComponents{}, law,
+                                     {law.depth(0.2), 0.2, stretch + 1e-3, stretch, 1e-3}, state)
+                  .stretch;
+  CHECK(state.static_share == 0);
+  CHECK_RELATIVE(law.force(stretch), 0.06, test::ulps<double>(16));
 }
 
 TEST_CASE("literal shift: as printed, D_t keeps its last value and friction drops at once") {
