@@ -15,6 +15,21 @@
 using namespace palpate;
 using namespace palpate::test;
 
+namespace {
+/// A tool with two feet on a flat face; the bridge between them is 0.2 mm higher.
+template <FrictionLaw Friction>
+auto two_feet(const Friction& friction) {
+  std::vector<V> points;
+  for (int i = -10; i <= 10; ++i) points.emplace_back(5e-4 * i, std::abs(i) > 4 ? 0 : 2e-4, 0);
+  return ContactSolver<Box<double>, DuffingForce<double>, Friction, Regions<4, AreaSharing>>(
+      {.object = block,
+       .tool = ToolPoints<double>(points, std::vector<double>(points.size(), 2.5e-7), {.contact_area = 2e-6}),
+       .force = law,
+       .friction = friction,
+       .contacts = {.distance = 6e-4}});
+}
+}  // namespace
+
 TEST_CASE("region: force and torque equal the sum over the points, and do not depend on the clustering") {
   const ToolPoints<double> tool = face(9, 1e-3, 4e-5);
   ContactSolver<Ellipsoid<double>, DuffingForce<double>, Frictionless<double>, SingleRegion<AreaSharing>> one(
@@ -113,16 +128,7 @@ TEST_CASE("without friction no closed path gains or loses energy") {
 }
 
 TEST_CASE("regions that split and merge keep the tangential force") {
-  // A tool with two feet on a flat face; tilting lifts the bridge between them.
-  std::vector<V> points;
-  for (int i = -10; i <= 10; ++i) points.emplace_back(5e-4 * i, std::abs(i) > 4 ? 0 : 2e-4, 0);
-  ToolPoints<double> tool(points, std::vector<double>(points.size(), 2.5e-7), {.contact_area = 2e-6});
-  ContactSolver<Box<double>, DuffingForce<double>, PowerLawFriction<double>, Regions<4, AreaSharing>> solver(
-      {.object = block,
-       .tool = std::move(tool),
-       .force = law,
-       .friction = PowerLawFriction<double>({.K = 0.562, .beta = 0.75, .mu_dynamic = 0.3}),
-       .contacts = {.distance = 6e-4}});
+  auto solver = two_feet(PowerLawFriction<double>({.K = 0.562, .beta = 0.75, .mu_dynamic = 0.3}));
   V before = V::Zero();
   std::size_t regions_before = 0;
   int splits = 0, merges = 0;
@@ -152,14 +158,7 @@ TEST_CASE("regions that split and merge keep the tangential force") {
 }
 
 TEST_CASE("feet that slide, pressed until they are one region, slide on below the static limit") {
-  std::vector<V> points;
-  for (int i = -10; i <= 10; ++i) points.emplace_back(5e-4 * i, std::abs(i) > 4 ? 0 : 2e-4, 0);
-  ContactSolver<Box<double>, DuffingForce<double>, CoulombFriction<double>, Regions<4, AreaSharing>> solver(
-      {.object = block,
-       .tool = ToolPoints<double>(points, std::vector<double>(points.size(), 2.5e-7), {.contact_area = 2e-6}),
-       .force = law,
-       .friction = dry,
-       .contacts = {.distance = 6e-4}});
+  auto solver = two_feet(dry);
   double x = 0, y = 0.02, most = 0;
   const auto move = [&](double to_x, double to_y) {
     const int steps = static_cast<int>(std::round(std::hypot(to_x - x, to_y - y) / 2e-6));
@@ -183,6 +182,35 @@ TEST_CASE("feet that slide, pressed until they are one region, slide on below th
   move(6e-3, 0.0196);
   CHECK(most <= 0.3 * (1 + 1e-9));
   CHECK(most >= 0.3 * (1 - 1e-3));
+}
+
+TEST_CASE("feet that have just broken away, pressed until they are one region: friction does not drop") {
+  auto solver = two_feet(dry);
+  double friction = 0, pressed = 0;
+  const auto tick = [&](double x, double y) {
+    (void)solver.tick(at(x, y, 0));
+    V sum = V::Zero();
+    pressed = 0;
+    for (const auto& c : solver.contacts()) sum += c.friction, pressed += c.normal_force;
+    friction = sum.norm();
+  };
+  double x = 0, y = 0.02;
+  for (; y > 0.01981; y -= 2e-6) tick(x, y);  // the bridge is 0.01 mm above
+  const auto slide = [&] {
+    return solver.contacts().size() == 2 && solver.contacts()[0].mode == ContactMode::sliding &&
+           solver.contacts()[1].mode == ContactMode::sliding;
+  };
+  for (int i = 0; i < 1000 && !slide(); ++i) tick(x += 2e-6, y);
+  REQUIRE(slide());
+  const double carried = friction;
+  CHECK(carried > 0.45 * pressed);
+  double least = carried;
+  for (int i = 0; i < 10; ++i) {
+    tick(x, y -= 2e-6);
+    least = (std::min)(least, friction);
+  }
+  CHECK(solver.contacts().size() == 1);
+  CHECK(least > 0.99 * carried);  // measured: to 3e-15; sliding friction would be 0.6 of it
 }
 
 TEST_CASE("torque is about the mass centre, that of friction too") {

@@ -73,19 +73,21 @@ struct ReturnMapping {
       state.static_share = state.slid = S(0);
     }
     const S springs = state.springs;
-    S stretch = settle();
-    if (!state.sliding && (stretch < trial.stretch || state.springs < springs)) {
+    const bool slid_before = state.sliding;
+    S stretch = slid_before ? trial.stretch : settle();
+    if (!slid_before && (stretch < trial.stretch || state.springs < springs)) {
       state.sliding = true;
       state.static_share = S(1);
       state.slid = S(0);
     }
-    if ((state.strength > S(1) || state.static_share > S(0)) && stretch > S(0)) {
-      const S left = (std::max)(S(0), S(1) - trial.travel / stretch);
+    const bool wears_off = (state.strength > S(1) || state.static_share > S(0)) && trial.stretch > S(0);
+    if (wears_off) {
+      const S left = (std::max)(S(0), S(1) - trial.travel / trial.stretch);
       state.strength = S(1) + (state.strength - S(1)) * left;
       state.static_share *= left;
       if (!(state.static_share > std::numeric_limits<S>::epsilon())) state.static_share = S(0);
-      stretch = settle();
     }
+    if (slid_before || wears_off) stretch = settle();
     state.slid = stretch < trial.stretch ? stretch : (std::max)(state.slid, stretch);
     SkewedForce<S> force = skew.force(law, trial.depth, trial.normal_force, stretch);
     force.tangential *= state.springs;
