@@ -7,7 +7,6 @@
 
 #include <palpate/geometry/box.hpp>
 #include <palpate/geometry/ellipsoid.hpp>
-#include <palpate/geometry/sampled_surface.hpp>
 #include <palpate/law/friction/coulomb.hpp>
 #include <palpate/law/friction/power_law.hpp>
 #include <palpate/resolved/contact_samples.hpp>

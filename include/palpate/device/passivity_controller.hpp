@@ -105,7 +105,8 @@ class PassivityController {
     }
     const S going_in = (std::max)(S(0), -work(wrench, now) * tick);
     const S in_flight = going_in * (static_cast<S>(device_.delay) + S(0.5)) / S(2);
-    if (left + in_flight < stored.least) scale_ = (std::max)(S(0), left + in_flight) / stored.least;
+    if (stored.least > S(0) && left + in_flight < stored.least)  // not of a debt in free air, 0/0
+      scale_ = (std::max)(S(0), left + in_flight) / stored.least;
     scale_ = (std::min)(scale_, spends(wrench, v, (std::max)(S(0), left), tick));
     if (stored.most > S(0)) scale_ = (std::min)(scale_, last + dt / recovery);
     const Wrench<S>& held = sent(device_.delay + 1);

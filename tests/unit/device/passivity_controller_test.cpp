@@ -173,7 +173,10 @@ TEST_CASE("passivity controller: in free air nothing is sent and a debt is worke
   const double debt = control.budget();
   REQUIRE(debt < 0);
   CHECK(control.scale() == 0);
-  for (int i = 2; i < 100; ++i) CHECK(control.pass({}, at(1e-3 * i), {}, dt).force == V::Zero());
+  for (int i = 2; i < 100; ++i) {
+    CHECK(control.pass({}, at(1e-3 * i), {}, dt).force == V::Zero());
+    CHECK(control.scale() == 1);  // of nothing
+  }
   CHECK(control.budget() == 0);
 }
 
@@ -207,6 +210,14 @@ TEST_CASE("passivity controller: what is not finite gives a zero wrench, and all
   zeroes(w, at(-1e-3), stored, -dt);
   auto control = pressed();
   CHECK(is_finite(control.pass(w, at(-1e-3), stored, 0).force));  // no time has passed
+  auto slow = pressed();
+  for (int i = 0; i < 20; ++i) {  // the mean step is 1e199 s for as long as it is kept
+    const Wrench<double> out =
+        slow.pass(i % 2 ? w : Wrench<double>{}, at(-1e-3), stored, i == 0 ? 1e200 : dt);
+    CHECK(is_finite(out.force));
+    CHECK(slow.scale() >= 0);
+    CHECK(slow.scale() <= 1);
+  }
 }
 
 TEST_CASE("passivity controller: a lost tick does not change the force on a tool that rests") {
