@@ -3,6 +3,7 @@
 
 /// @file What a resolved contact hands to a shape: a load on a part of the body's surface.
 
+#include <palpate/core/scalar.hpp>
 #include <palpate/core/vector.hpp>
 
 namespace palpate {
@@ -16,5 +17,18 @@ struct SurfaceLoad {
   S area;             ///< of the cell [m^2]
   S softening = 0;    ///< by finite strain: near it 1 + softening of the half-space's displacement
 };
+
+/// Whether a body of Young's modulus E [Pa] can have it: position and direction as a pose's, an area of 1e-18
+/// to 1e12 m^2, no component of the mean stress above 1e4 E, where E times depth over width is common.
+template <Real S>
+[[nodiscard]] inline bool is_usable(const SurfaceLoad<S>& load, S E) noexcept {
+  const auto within = [](const Vec3<S>& v, S most) {
+    return is_within(v.x(), most) && is_within(v.y(), most) && is_within(v.z(), most);
+  };
+  return within(load.position, S(1e6)) && within(load.direction, S(2)) &&
+         is_within(load.direction.squaredNorm() - S(1), S(1e-3)) && is_within(load.area, S(1e12)) &&
+         load.area >= S(1e-18) && within(load.force, S(1e4) * E * load.area) &&
+         is_within(load.softening, S(1e3));
+}
 
 }  // namespace palpate

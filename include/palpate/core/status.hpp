@@ -25,6 +25,7 @@ enum class Status : std::uint32_t {
   near_field_only =
       1u << 12,  ///< a resolved contact where the body's response is no elastic body's (fixed at too few
                  ///< elements, too thin for them): as on a half-space, until the tool has left
+  invalid_load = 1u << 13,  ///< a load is not finite or absurd (contact/surface_load.hpp): it is left out
 };
 
 [[nodiscard]] constexpr Status operator|(Status a, Status b) noexcept {

@@ -21,7 +21,7 @@ namespace palpate {
 ///     solver.state().loads(loads);                          // servo thread, to hand over
 ///     solver.draw({loads.begin(), loads.size()}, buffer);   // render thread
 ///
-/// A load that is not finite is left out, invalid_pose; loads beyond the capacity, point_overflow. With the
+/// A load that is not usable is left out, invalid_load; loads beyond the capacity, point_overflow. With the
 /// same loads as in the last write nothing is written. All vertices move: `Moved` counts them all.
 ///
 /// Set-up reports a field that is missing, and a mesh that is not finite or, with normals, not closed.
@@ -53,8 +53,8 @@ class ResponseLoadDeformation {
     Moved<S> moved;
     kept_.clear();
     for (const SurfaceLoad<S>& load : loads) {
-      if (!is_usable(load))
-        moved.status |= Status::invalid_pose;
+      if (!is_usable(load, static_cast<S>(field_->E())))
+        moved.status |= Status::invalid_load;
       else if (kept_.size() == Capacity)
         moved.status |= Status::point_overflow;
       else
@@ -74,10 +74,6 @@ class ResponseLoadDeformation {
  private:
   [[noreturn]] static std::shared_ptr<const ResponseField> fail_without() {
     fail("ResponseLoadDeformation", "needs a response field");
-  }
-  [[nodiscard]] static bool is_usable(const SurfaceLoad<S>& load) noexcept {
-    return is_finite(load.position) && is_finite(load.direction) && is_finite(load.force) &&
-           is_finite(load.area) && load.area > S(0);
   }
   [[nodiscard]] static bool same(const SurfaceLoad<S>& a, const SurfaceLoad<S>& b) noexcept {
     return a.position == b.position && a.direction == b.direction && a.force == b.force && a.area == b.area;

@@ -143,7 +143,7 @@ TEST_CASE("loads that are not finite or too many are left out and reported; a mi
   bad.force.x() = std::numeric_limits<double>::quiet_NaN();
   const std::array<SurfaceLoad<double>, 4> loads{good, bad, good, good};
   const Moved<double> moved = shape.write(std::span<const SurfaceLoad<double>>(loads), drawing.buffer);
-  CHECK(has(moved.status, Status::invalid_pose));
+  CHECK(has(moved.status, Status::invalid_load));
   CHECK(has(moved.status, Status::point_overflow));
   for (const V& x : drawing.at) CHECK(x.allFinite());
   CHECK_THROWS_WITH_AS(Shape(nullptr, mesh), "ResponseLoadDeformation: needs a response field", SetupError);

@@ -343,7 +343,7 @@ TEST_CASE("a ball that sticks is dragged along by what another does") {
   CHECK_RELATIVE(dragged / pulled, 8 * a / (3 * std::numbers::pi * apart), a * a / (apart * apart));
 }
 
-TEST_CASE("loads beside: none, too many, not finite, and after an invalid pose") {
+TEST_CASE("loads beside: none, too many, absurd, and after an invalid pose") {
   const HalfSpace body({.E = E, .nu = nu});
   const auto solver = on_block(2 * half, body, Frictionless<double>{}, finger());
   auto state = solver.initial_state(), other = solver.initial_state();
@@ -356,17 +356,50 @@ TEST_CASE("loads beside: none, too many, not finite, and after an invalid pose")
   other.loads(loads);
   const std::size_t whole = loads.size();
   REQUIRE(whole > 20);
-  // A load that is not finite is left out.
+  // A load that is not finite or absurd is left out.
   const auto felt = [&](auto& of) {
     of.set_beside({loads.begin(), loads.size()});
     return solver.evaluate(at[0], 1e-3, of);
   };
   auto a = solver.initial_state(), b = solver.initial_state();
   const auto right = felt(a);
-  loads.push_back(loads[0]);
-  loads[whole].force.x() = std::numeric_limits<double>::quiet_NaN();
-  CHECK(felt(b).wrench.force == right.wrench.force);
-  CHECK_FALSE(has(right.status, Status::point_overflow));
+  CHECK(right.status == Status::contact);
+  const SurfaceLoad<double> good = loads[0];
+  loads.push_back(good);
+  constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
+  const auto is_left_out = [&](const SurfaceLoad<double>& bad) {
+    loads[whole] = bad;
+    b.reset();
+    const auto without = felt(b);
+    CHECK(without.wrench.force == right.wrench.force);
+    CHECK(without.status == (Status::contact | Status::invalid_load));
+  };
+  for (const double newtons : {no_number, -1e38, 1.1e4 * E * good.area}) {
+    SurfaceLoad<double> bad = good;
+    bad.force.x() = newtons;
+    is_left_out(bad);
+  }
+  for (const double area : {no_number, -1., 0., 1e-19, 1e13}) {
+    SurfaceLoad<double> bad = good;
+    bad.area = area;
+    is_left_out(bad);
+  }
+  for (const double metres : {no_number, 1e300}) {
+    SurfaceLoad<double> bad = good;
+    bad.position.y() = metres;
+    is_left_out(bad);
+  }
+  for (const double factor : {no_number, 0., 1.01}) {
+    SurfaceLoad<double> bad = good;
+    bad.direction *= factor;
+    is_left_out(bad);
+  }
+  for (const double softening : {no_number, 1e4}) {
+    SurfaceLoad<double> bad = good;
+    bad.softening = softening;
+    is_left_out(bad);
+  }
+  loads[whole] = good;
   while (loads.size() < 257) loads.push_back(loads[0]);
   CHECK(has(felt(b).status, Status::point_overflow));
   // Loads are for one tick, also where that has an invalid pose.

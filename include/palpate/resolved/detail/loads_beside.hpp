@@ -7,6 +7,7 @@
 #include <palpate/core/aligned_list.hpp>
 #include <palpate/core/pose.hpp>
 #include <palpate/core/scalar.hpp>
+#include <palpate/core/status.hpp>
 #include <palpate/detection/tool_points.hpp>
 #include <palpate/geometry/concept.hpp>
 #include <palpate/resolved/detail/half_space_kernel.hpp>
@@ -54,7 +55,8 @@ class LoadsBeside {
   void set(std::span<const SurfaceLoad<S>> loads) noexcept { loads_ = loads; }
   /// After a tick.
   void drop() noexcept { loads_ = {}; }
-  [[nodiscard]] bool has_all() const noexcept { return loads_.size() <= triangle_.size(); }
+  /// Of the tick's loads: those that are left out.
+  [[nodiscard]] Status status() const noexcept { return left_out_; }
 
   void forget() noexcept { v_ = mean_ = next_ = rest_ = Vec3<float>::Zero(), touched_ = false; }
   /// With the tool at X; it was at `before` in the last tick, and then touched the body or did not.
@@ -79,12 +81,12 @@ class LoadsBeside {
   /// Takes them into a tick's system: positions relative to `origin`, P = f / per_load.
   template <class Body, class RegularPart>
   void place(const Body& body, const Vec3<S>& origin, S per_load, RegularPart& regular) noexcept {
-    size_ = 0;
+    size_ = 0, left_out_ = Status::ok;
     for (const SurfaceLoad<S>& load : loads_) {
-      if (size_ == triangle_.size()) break;
-      if (!is_finite(load.position) || !is_finite(load.direction) || !is_finite(load.force) ||
-          !is_finite(load.area))
-        continue;
+      const bool usable = is_usable(load, static_cast<S>(body.E())), room = size_ < triangle_.size();
+      if (!usable) left_out_ |= Status::invalid_load;
+      if (usable && !room) left_out_ |= Status::point_overflow;
+      if (!usable || !room) continue;
       x_.set(size_, (load.position - origin).template cast<float>());
       m_.set(size_, load.direction.template cast<float>());
       P_.set(size_, (load.force / per_load).template cast<float>());
@@ -219,6 +221,7 @@ class LoadsBeside {
   std::vector<std::uint32_t> triangle_;  // of the load mesh, where a load was last
   VectorList given_;
   std::size_t size_ = 0;
+  Status left_out_ = Status::ok;
   Vec3<float> v_ = Vec3<float>::Zero(), mean_ = v_, next_ = v_, rest_ = v_;  // rest_: e
   std::uint32_t triangle_of_nearest_ = ~0u;
   bool touched_ = false;  // in the last tick
@@ -231,7 +234,7 @@ struct NoLoadsBeside {
   static void drop() noexcept {}
   static void forget() noexcept {}
   static void begin_tick(const auto&...) noexcept {}
-  [[nodiscard]] static bool has_all() noexcept { return true; }
+  [[nodiscard]] static Status status() noexcept { return Status::ok; }
   [[nodiscard]] static const auto& over(const auto& X) noexcept { return X; }
   [[nodiscard]] static const auto& own(const auto& a, const auto& /*m*/) noexcept { return a; }
   [[nodiscard]] PALPATE_INLINE static SimdVec3<VectorList::V> load(std::size_t) noexcept { return {}; }

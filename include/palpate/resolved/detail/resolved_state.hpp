@@ -148,19 +148,19 @@ class ResolvedState {
     return deepest;
   }
 
-  /// Solves for the loads with the tool at X. False where there is no room for all that acts.
+  /// Solves for the loads with the tool at X. Not ok where not all that acts is taken in.
   template <class Friction>
-  [[nodiscard]] bool solve(const Force& force, const Friction& friction, const ToolPoints<S>& tool,
-                           const Pose<S>& X) noexcept {
+  [[nodiscard]] Status solve(const Force& force, const Friction& friction, const ToolPoints<S>& tool,
+                             const Pose<S>& X) noexcept {
     const bool first = contacts_.empty();
     contacts_.clear(), residual_ = {};
     const Pose<S> before = std::exchange(pose_, X);
-    if (touching_.empty()) {
-      forget();
-      return true;
-    }
     float size2 = 0;
     for (const Touching& c : touching_) size2 += c.depth * c.depth;
+    if (!(size2 > 0)) {  // no point touches, or none by 1e-22 m, whose square is no float
+      forget();
+      return Status::ok;
+    }
     const float tolerance = static_cast<float>(force.params().tolerance) * std::sqrt(size2);
     const Vec3<S>& x = tool.point(touching_[0].point);
     const float moved = first ? 0.f : static_cast<float>((X * x - before * x).norm());
@@ -183,9 +183,8 @@ class ResolvedState {
       if (round == most_rounds || !take_in(force, tool, tolerance, again)) break;
     }
     finish(tool, moved);
-    const bool all = has_room_ && beside_.has_all() && regular_.has_all();
     beside_.drop();
-    return all;
+    return beside_.status() | (has_room_ && regular_.has_all() ? Status::ok : Status::point_overflow);
   }
 
  private:

@@ -51,11 +51,11 @@ class ResolvedCollector {
     } while (state.look_again(++looks));
     const S shift = state.shift();  // of this tick: solve() leaves the next one's
     const bool was_touching = state.has_contact();
-    if (!state.solve(force, friction, tool, X)) result.status |= Status::point_overflow;
+    result.status |= state.solve(force, friction, tool, X);
     if (!state.has_contact()) return;
     result.status |= Status::contact;
     if (deepest > object.reach()) result.status |= Status::beyond_reach;
-    if (state.residual().relative > S(10) * static_cast<S>(force.params().tolerance))
+    if (!(state.residual().relative <= S(10) * static_cast<S>(force.params().tolerance)))
       result.status |= Status::unconverged;
     if (state.residual().near_field_only) result.status |= Status::near_field_only;
     if (!was_touching) ++state.id;
