@@ -237,8 +237,8 @@ class HapticDevice {
     if (const double limit = ask(HD_SOFTWARE_VELOCITY_LIMIT); limit > 0)  // mm/s
       gate.max_speed = (std::min)(gate.max_speed, 0.9e-3 * limit);
     chain.has_torque = limits_.has_torque;
-    // A stiff wall, touched fast, is more than the usual impulse limit, and the amplifiers would drop out. The
-    // chain looks for jumps itself, and knows how far the tool has moved.
+    // A stiff wall, touched fast, is more than the usual impulse limit, and the amplifiers would drop out.
+    // The chain looks for jumps itself, and knows how far the tool has moved.
     hdDisable(HD_SOFTWARE_FORCE_IMPULSE_LIMIT);
     drain_on_this_thread();
     if (!(limits_.max_force > 0)) close_and_fail("the device does not tell its largest force");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 
-/// @file Set-up and tick of response fields, samples of tools, compiled once for programs with PALPATE_COMPILED (config.hpp).
+/// @file Set-up and tick of response fields, samples of tools, compiled once for programs with
+/// PALPATE_COMPILED (config.hpp).
 
 #ifndef PALPATE_COMPILED
 #error "compile this file with PALPATE_COMPILED defined, as every file of the program"

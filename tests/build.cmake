@@ -16,12 +16,12 @@ endforeach()
 set(generated ${CMAKE_CURRENT_BINARY_DIR}/generated)
 file(CONFIGURE OUTPUT ${generated}/all_headers.hpp CONTENT "#pragma once\n${include_all}" @ONLY)
 
-# Each header alone, in two forms. The thorough form (tests/run --thorough) is the whole check: a file for each
-# header, header-only, and against the compiled set-up without exceptions. The usual form has a file for each folder, with Eigen parsed already and
-# without what only the set-up of a response field needs: a tenth of the time. Headers that include least come
-# first there, so that few stand behind what they forgot. It cannot see an include that another header of the
-# folder brought before, nor one of Eigen's. Force laws stay free of Eigen, which is most of a user's compile
-# time: both forms check them without it.
+# Each header alone, in two forms. The thorough form (tests/run --thorough) is the whole check: a file for
+# each header, header-only, and against the compiled set-up without exceptions. The usual form has a file for
+# each folder, with Eigen parsed already and without what only the set-up of a response field needs: a tenth
+# of the time. Headers that include least come first there, so that few stand behind what they forgot. It
+# cannot see an include that another header of the folder brought before, nor one of Eigen's. Force laws stay
+# free of Eigen, which is most of a user's compile time: both forms check them without it.
 set(adapter_libraries "")
 foreach(adapter IN LISTS adapters)
   get_filename_component(name ${adapter} NAME_WE)
@@ -88,9 +88,9 @@ target_include_directories(palpate_test_host PRIVATE host/config)
 target_compile_options(palpate_test_host PRIVATE ${host_flags})
 add_test(NAME host COMMAND palpate_test_host)
 
-# Two objects of one program that both set up and use a response field: each with every header, header-only, as
-# that engine's; and the field alone against the compiled set-up. What matters is that there are two: the second
-# is a copy of the first, and costs nothing to compile.
+# Two objects of one program that both set up and use a response field: each with every header, header-only,
+# as that engine's; and the field alone against the compiled set-up. What matters is that there are two: the
+# second is a copy of the first, and costs nothing to compile.
 function(palpate_two_objects program source)  # and what they link
   add_library(palpate_test_${program}_object OBJECT odr/${source}.cpp)
   set(second ${CMAKE_CURRENT_BINARY_DIR}/${program}_second${CMAKE_CXX_OUTPUT_EXTENSION})

@@ -1,8 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
 # check_docs.sh ROOT: docs and code agree.
-#   - Every concept in include/, but for namespaces and folders called detail, is in a row of docs/extending.md.
-#   - The code in docs/extending.md is what tests compile between two lines `// [extending]`, and nothing else is.
+#   - Every concept in include/, but for namespaces and folders called detail, is in a row of
+#     docs/extending.md.
+#   - The code in docs/extending.md is what tests compile between two lines `// [extending]`, and nothing else
+#     is.
 #   - Files and folders that docs/*.md and README.md name in backticks exist.
 #   - What docs/notation.md says is in a file is there.
 # Prints file:line: what is wrong, and fails if there was anything.

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: MIT
-# check_docs_test.sh DIRECTORY: shows that check_docs.sh finds each kind of mistake, in a tree made in DIRECTORY.
+# check_docs_test.sh DIRECTORY: shows that check_docs.sh finds each kind of mistake, in a tree made in
+# DIRECTORY.
 set -eu
 check=$(cd "$(dirname "$0")" && pwd)/check_docs.sh
 rm -rf "$1"

@@ -32,10 +32,10 @@ struct Collide {
   const fcl::BVHModel<fcl::OBBRSS<S>>* model;
   bool touches(const V& c, S r) const noexcept {
     const fcl::Sphere<S> query(r);
-    fcl::Transform3<S> place = fcl::Transform3<S>::Identity();
-    place.translation() = c;
+    fcl::Transform3<S> position = fcl::Transform3<S>::Identity();
+    position.translation() = c;
     fcl::CollisionResult<S> result;
-    return fcl::collide<S>(&query, place, model, fcl::Transform3<S>::Identity(), {}, result) > 0;
+    return fcl::collide<S>(&query, position, model, fcl::Transform3<S>::Identity(), {}, result) > 0;
   }
 };
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 
 /// @file Contact resolved at the tool's points: time of a force tick, and its error, by how many points carry
-/// load. A ball of 15 mm is pressed 1 mm deep and slides to and fro at up to 0.1 m/s, 1 kHz, or sways by half a
-/// millimetre, so that the middle of the contact sticks: on a half-space, where the exact sphere's force is
+/// load. A ball of 15 mm is pressed 1 mm deep and slides to and fro at up to 0.1 m/s, 1 kHz, or sways by half
+/// a millimetre, so that the middle of the contact sticks: on a half-space, where the exact sphere's force is
 /// known, and on a block of 100 mm with a response field. Only points near the ball's pole are asked, so that
-/// detection is small. Beside it tools all of whose points are asked: four such balls, and a box of a thousand
-/// points that is pressed flat.
+/// detection is small. Beside it tools all of whose points are asked: four such balls, and a box of a
+/// thousand points that is pressed flat.
 ///
 ///     tool                   ball, four balls, box
 ///     motion                 slides or sways

@@ -68,12 +68,12 @@ inline void draw_bodies(std::FILE* to) {
     (void)tick.solve(&contact, 1, &force);
     std::vector<V> u(mesh.vertices.size());
     tick.displace(palpate::ResponseDisplay(field, mesh.vertices), u.front().data(), 3);
-    const double way = contact.displacement.norm();
+    const double size = contact.displacement.norm();
     for (const auto& t : mesh.triangles) {
       for (const std::size_t c : {0u, 1u, 2u, 2u}) {
         const V &x = mesh.vertices[t[c]], &v = u[t[c]];
         std::fprintf(to, "%zu %.2f %.2f %.2f %.3f %.3f %.3f %.3f\n%s", b, 1e3 * x.x(), 1e3 * x.y(),
-                     1e3 * x.z(), 1e3 * v.x(), 1e3 * v.y(), 1e3 * v.z(), v.norm() / way, c == 1 ? "\n" : "");
+                     1e3 * x.z(), 1e3 * v.x(), 1e3 * v.y(), 1e3 * v.z(), v.norm() / size, c == 1 ? "\n" : "");
       }
       std::fputs("\n\n", to);
     }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 
 /// @file Device, hand and solver in closed loop, simulated: a point on a flat object of stiffness K, with
-/// friction; without the chain to the motors, with a passivity controller, with a virtual coupling. Rows: what a
-/// hand gains, whether it buzzes at rest, and the stiffness felt. Then, for each device, the largest K up to
-/// which nothing is gained and nothing buzzes, in a stiff hand and a loose one; and in how many of many plays, also
-/// with ticks that are lost or late, the tool goes on vibrating. All of it is simulated time: the
+/// friction; without the chain to the motors, with a passivity controller, with a virtual coupling. Rows:
+/// what a hand gains, whether it buzzes at rest, and the stiffness felt. Then, for each device, the largest K
+/// up to which nothing is gained and nothing buzzes, in a stiff hand and a loose one; and in how many of many
+/// plays, also with ticks that are lost or late, the tool goes on vibrating. All of it is simulated time: the
 /// same figures in every run. The tables of docs/stability.md are written beside the CSV file (.md).
 
 #include "scenes.hpp"
@@ -41,8 +41,8 @@ struct NamedDevice {
   double nominal;  // stiffest wall by its maker or its users [N/m]
 };
 // Largest force: CHAI3D, src/devices/CPhantomDevices.cpp. Resolution: data sheets. Nominal stiffness: that of
-// OpenHaptics (programmer's guide) for the Touch, CHAI3D's for the others. Mass and friction: assumed, after data
-// sheets of which no copy was at hand. Viscous friction: assumed; little is known but that it is small.
+// OpenHaptics (programmer's guide) for the Touch, CHAI3D's for the others. Mass and friction: assumed, after
+// data sheets of which no copy was at hand. Viscous friction: assumed; little is known but that it is small.
 constexpr double viscous = 0.005;  // N s/m
 const std::array devices{
     NamedDevice{"Touch",
@@ -121,7 +121,7 @@ PlayFigures run(Chain chain, const Case& c, const NamedDevice& of, double wait =
   return test::play(device, {}, {c.play, ground, c.grip, wait}, control(chain, c.K, of, device), toss_speed);
 }
 double felt(const PlayFigures& f, double K) {
-  const double depth = (ground.at - f.place).dot(ground.normal);
+  const double depth = (ground.at - f.position).dot(ground.normal);
   return depth > 0 ? f.sent.force.dot(ground.normal) / (K * depth) : 0;
 }
 /// Nothing gained beyond what quantised positions hide, and at rest within two encoder steps.
@@ -129,7 +129,8 @@ bool is_stable(const PlayFigures& f, const LoopDevice& device) {
   return f.made <= f.quantised && f.amplitude <= 2 * device.resolution;
 }
 
-/// The largest stiffness of the grid up to which all plays are stable, and the least that a press there feels.
+/// The largest stiffness of the grid up to which all plays are stable, and the least that a press there
+/// feels.
 struct Width {
   double K = 0, felt = 0;
 };

@@ -70,10 +70,10 @@ class Contact {
       Eigen::Matrix<double, 18, 18> k = Eigen::Matrix<double, 18, 18>::Zero();
       Eigen::Matrix<double, 18, 1> r = Eigen::Matrix<double, 18, 1>::Zero();
       for (const FacePoint& at : quadrature_) {
-        V place = V::Zero(), t1 = V::Zero(), t2 = V::Zero(), d1 = V::Zero(), d2 = V::Zero();
+        V position = V::Zero(), t1 = V::Zero(), t2 = V::Zero(), d1 = V::Zero(), d2 = V::Zero();
         for (int i = 0; i < 6; ++i) {
           const V &rest = nodes[face[i]], now = rest + x.segment<3>(3 * face[i]);
-          place += at.shape[i] * now;
+          position += at.shape[i] * now;
           t1 += at.by1[i] * rest;
           t2 += at.by2[i] * rest;
           d1 += at.by1[i] * now;
@@ -84,10 +84,10 @@ class Contact {
           point->stretch = now / w;
           V traction;  // on the body
           Eigen::Matrix3d stiffness;
-          if (!touch(t, place, *point, traction, stiffness)) continue;
+          if (!touch(t, position, *point, traction, stiffness)) continue;
           ToolLoad& load = loads_[t];
           load.force += w * traction;
-          load.torque += w * (place - poses[t].origin).cross(traction);
+          load.torque += w * (position - poses[t].origin).cross(traction);
           load.area += now;
           load.stuck += point->sticks ? now : 0;
           for (int i = 0; i < 6; ++i) {
@@ -105,7 +105,7 @@ class Contact {
   /// What was assembled last is the equilibrium from which points slip next; called before the first, too.
   void commit() {
     for (Point& p : points_) {
-      p.anchor = p.place;
+      p.anchor = p.position;
       p.gap_before = p.gap;
       p.traction_before = p.traction;
       p.slid_before = p.pressure > 0 && !p.sticks;
@@ -148,16 +148,17 @@ class Contact {
   struct Point {
     V anchor = V::Zero(), traction_before = V::Zero();
     double gap_before = 0;
-    V place = V::Zero(), normal = V::Zero(), traction = V::Zero();
+    V position = V::Zero(), normal = V::Zero(), traction = V::Zero();
     double gap = 0, pressure = 0, stretch = 1;  // stretch: deformed area by undeformed
     bool sticks = false, slid_before = false;
   };
 
-  // Traction of a tool on the body at a place, and minus its derivative there. False where it does not touch.
-  bool touch(std::size_t t, const V& place, Point& p, V& traction, Eigen::Matrix3d& stiffness) const {
+  // Traction of a tool on the body at a position, and minus its derivative there. False where it does not
+  // touch.
+  bool touch(std::size_t t, const V& position, Point& p, V& traction, Eigen::Matrix3d& stiffness) const {
     const Eigen::Matrix3d R = poses[t].rotation.toRotationMatrix();
-    p.place = R.transpose() * (place - poses[t].origin);
-    const auto [gap, n] = tools[t].distance(p.place);
+    p.position = R.transpose() * (position - poses[t].origin);
+    const auto [gap, n] = tools[t].distance(p.position);
     p.gap = gap;
     p.normal = n;
     p.pressure = 0;
@@ -165,7 +166,7 @@ class Contact {
     if (!(gap < 0)) return false;
     const double stiff = share * penalty;
     p.pressure = -stiff * gap;
-    const Eigen::Matrix3d H = tools[t].curvature(p.place);
+    const Eigen::Matrix3d H = tools[t].curvature(p.position);
     Eigen::Matrix3d k = stiff * n * n.transpose() - p.pressure * H;
     if (friction > 0) k += rub(p, H);
     traction = R * (p.pressure * n - p.traction);
@@ -179,7 +180,7 @@ class Contact {
     const V& n = p.normal;
     // Of its way, what it went since it touched.
     const double part = p.gap_before > 0 ? p.gap / (p.gap - p.gap_before) : 1;
-    const V v = p.traction_before + part * stiff * (p.place - p.anchor);
+    const V v = p.traction_before + part * stiff * (p.position - p.anchor);
     const Eigen::Matrix3d T = Eigen::Matrix3d::Identity() - n * n.transpose();
     const V trial = T * v;
     const double size = trial.norm(), limit = friction * p.pressure;

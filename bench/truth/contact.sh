@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Contact references by finite elements: bench/truth/contact.sh FINENESS [FILE|CHECK...]
-# FILE: a case (bench/truth/case_file.hpp), those of bench/truth/data/contact if left out. CHECK: hertz, elliptic,
-# "rounded punch", cattaneo: against closed forms. FINENESS: 3 takes minutes a case on one core. Results are in
-# out/contact/FINENESS.
+# FILE: a case (bench/truth/case_file.hpp), those of bench/truth/data/contact if left out. CHECK: hertz,
+# elliptic, "rounded punch", cattaneo: against closed forms. FINENESS: 3 takes minutes a case on one core.
+# Results are in out/contact/FINENESS.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 source tools/need.sh

@@ -64,7 +64,7 @@ class ContactMesh {
 
  private:
   struct Wish {
-    V place;
+    V position;
     double edge;
   };
 
@@ -84,11 +84,11 @@ class ContactMesh {
     return out;
   }
   V on_face(const std::array<int, 6>& face, const V& l) const {
-    V place = V::Zero();
+    V position = V::Zero();
     for (int i = 0; i < 3; ++i)
-      place +=
+      position +=
           l[i] * (2 * l[i] - 1) * mesh_.nodes[face[i]] + 4 * l[i] * l[(i + 1) % 3] * mesh_.nodes[face[i + 3]];
-    return place;
+    return position;
   }
   void divide(const std::array<int, 6>& face, const V& a, const V& b, const V& c, std::size_t tool,
               const Pose& pose, double spacing, std::vector<V>& out) const {
@@ -108,14 +108,14 @@ class ContactMesh {
     divide(face, ab, bc, ca, tool, pose, spacing, out);
   }
   // Twice the spread across the narrower way: a disc's radius.
-  double half_width(const std::vector<V>& places) const {
+  double half_width(const std::vector<V>& positions) const {
     V mean = V::Zero();
     Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
     const bool mirrored[3] = {case_.body.half_x, false, case_.body.half_z};
-    for (const V& p : places) mean += p / double(places.size());
+    for (const V& p : positions) mean += p / double(positions.size());
     for (int k = 0; k < 3; ++k)
       if (mirrored[k]) mean[k] = 0;
-    for (const V& p : places) spread += (p - mean) * (p - mean).transpose() / double(places.size());
+    for (const V& p : positions) spread += (p - mean) * (p - mean).transpose() / double(positions.size());
     for (int k = 0; k < 3; ++k)
       for (int l = 0; l < 3; ++l)
         if (k != l && (mirrored[k] || mirrored[l])) spread(k, l) = 0;
@@ -123,12 +123,12 @@ class ContactMesh {
   }
   void add_overlap(std::size_t step, std::size_t tool, double fineness, std::vector<Wish>& wishes) {
     const RigidTool& t = case_.tools[tool];
-    std::vector<V> places;
+    std::vector<V> positions;
     double spacing = t.extent() / 8;
-    for (int i = 0; i < 8 && places.size() < 400; ++i, spacing /= 2)
-      places = overlap(tool, case_.poses[step][tool], spacing);
-    if (places.empty()) return;
-    const double width = case_.size > 0 ? case_.size : half_width(places);
+    for (int i = 0; i < 8 && positions.size() < 400; ++i, spacing /= 2)
+      positions = overlap(tool, case_.poses[step][tool], spacing);
+    if (positions.empty()) return;
+    const double width = case_.size > 0 ? case_.size : half_width(positions);
     width_ = (std::min)(width_, width);
     const double edge = 0.7 * width / fineness;
     for (double share : {0.5, 0.75, 1.0}) {
@@ -151,8 +151,8 @@ class ContactMesh {
       const double edge =
           edge_ * std::pow(1.25, std::floor(std::log(w.edge / edge_) / std::log(1.25) + 1e-9));
       std::array<long, 3> cube;
-      for (int k = 0; k < 3; ++k) cube[k] = std::lround(w.place[k] / edge);
-      if (taken[edge].insert(cube).second) out[edge].push_back(w.place);
+      for (int k = 0; k < 3; ++k) cube[k] = std::lround(w.position[k] / edge);
+      if (taken[edge].insert(cube).second) out[edge].push_back(w.position);
     }
     return out;
   }

@@ -82,13 +82,13 @@ class ContactReference {
 
   // Moves the tools to a step's poses. False where there is no equilibrium on the way.
   bool go(std::size_t step) {
-    double way = 0;
+    double travel = 0;
     for (std::size_t t = 0; t < case_.tools.size(); ++t) {
       const Pose &a = case_.poses[step - 1][t], &b = case_.poses[step][t];
-      way = (std::max)(way, (b.origin - a.origin).norm() +
-                                a.rotation.angularDistance(b.rotation) * 0.5 * case_.tools[t].extent());
+      travel = (std::max)(travel, (b.origin - a.origin).norm() +
+                                      a.rotation.angularDistance(b.rotation) * 0.5 * case_.tools[t].extent());
     }
-    const double longest = 1 / std::ceil((std::max)(way / longest_, 1.0) - 1e-9);
+    const double longest = 1 / std::ceil((std::max)(travel / longest_, 1.0) - 1e-9);
     double at = 0, stride = longest, smallest = longest / 100;
     Eigen::VectorXd speed = Eigen::VectorXd::Zero(rubber_.state().size());
     while (at < 1) {

@@ -27,9 +27,9 @@ class GmshScript {
     rim_ = 12;
     cut({});
     int tag = 1000000;
-    for (const auto& [length, places] : points) {
+    for (const auto& [length, positions] : points) {
       std::string list_of;
-      for (const V& p : places) {
+      for (const V& p : positions) {
         script_ += text("Point(", ++tag, ") = {", list(p), "};\n");
         list_of += text(list_of.empty() ? "" : ", ", tag);
       }

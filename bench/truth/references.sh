@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# The response field against finite elements made for it: bench/truth/references.sh [FINENESS [CASE...]], the table of docs/accuracy.md.
-# FINENESS: patch radius over the elements' edges at its rim, 10 if left out. All cases take an hour on one core,
-# with 16 three times that. References stay in out/truth/FINENESS and are not made again.
+# The response field against finite elements made for it: bench/truth/references.sh [FINENESS [CASE...]], the
+# table of docs/accuracy.md. FINENESS: patch radius over the elements' edges at its rim, 10 if left out. All
+# cases take an hour on one core, with 16 three times that. References stay in out/truth/FINENESS and are not
+# made again.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 source tools/need.sh

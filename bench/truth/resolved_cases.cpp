@@ -5,9 +5,9 @@
 ///
 ///     resolved_cases CASE_DIR...      e.g. bench/truth/data/contact/*
 ///
-/// CASE_DIR holds case.txt and load.csv. Several tools are solved in turn, each under the loads of the others.
-/// Prints each step: each tool's load, displacements at 300 places; and the root mean square of the force's
-/// error as a vector, of all tools over all tools' forces.
+/// CASE_DIR holds case.txt and load.csv. Several tools are solved in turn, each under the loads of the
+/// others. Prints each step: each tool's load, displacements at 300 positions; and the root mean square of
+/// the force's error as a vector, of all tools over all tools' forces.
 
 #include "truth/case_file.hpp"
 
@@ -63,7 +63,7 @@ std::vector<std::vector<Load>> loads(const std::string& path) {
   return out;
 }
 
-/// Displacements [m] of places on the surface, by step.
+/// Displacements [m] of positions on the surface, by step.
 struct Shapes {
   palpate::MeshData<double> at;  // vertices alone
   std::vector<double> area;

@@ -160,8 +160,8 @@ inline void elastic_contact(const Table& table, bool quick) {
   for (const double apart : {2.4e-3, 1.6e-3, 1.1e-3, 8e-4, 6e-4})
     if (!quick || apart > 1e-3) resolved(ball, pole(apart), apart < 1.5e-3 ? 0.01 : 0);
 
-  // A blade's face, 30 x 3 mm, pressed and tilted as far as it stays in contact. Limits of fine lattices, as in
-  // tests/unit/resolved/half_space_test.cpp.
+  // A blade's face, 30 x 3 mm, pressed and tilted as far as it stays in contact. Limits of fine lattices, as
+  // in tests/unit/resolved/half_space_test.cpp.
   constexpr double length = 0.03, width = 0.003, area = length * width;
   ElasticPath blade{"blade 10 : 1 flat and tilted", "limit of 8 x 80 to 16 x 160 cells", {}, {}, {}};
   for (int i = 0; i < 64; ++i) {

@@ -177,13 +177,13 @@ inline V ellipsoid_direction(const V& d,
   }
   return ((1 - blend(r)) * ring + blend(r) * plain).normalized();
 }
-inline V ellipsoid_place(const V& c, double patch) {
+inline V ellipsoid_position(const V& c, double patch) {
   const double rho = c.cwiseAbs().maxCoeff();
   if (rho == 0) return V::Zero();
   return V(0.06, 0.04, 0.04).cwiseProduct(ellipsoid_direction(c / rho, patch)) *
          (1 - std::pow(1 - rho, thin));
 }
-inline V cube_place(const V& c, double patch) {
+inline V cube_position(const V& c, double patch) {
   const double r = (std::max)(std::abs(c.x()), std::abs(c.z())), b = blend(r);
   const auto [cosine, sine] = on_circle(c.x(), c.z());
   const double ring = ring_radius(r, patch, 0.045), depth = (1 - c.y()) / 2;
@@ -207,7 +207,7 @@ inline Tetrahedra make_tetrahedra(const Truth& t, int cells, int order) {
     for (int j = 0; j < points; ++j)
       for (int k = 0; k < points; ++k) {
         const V c = V(i, j, k) * 2 / (points - 1) - V::Ones();
-        const V x = t.is_cube() ? detail::cube_place(c, t.patch) : detail::ellipsoid_place(c, t.patch);
+        const V x = t.is_cube() ? detail::cube_position(c, t.patch) : detail::ellipsoid_position(c, t.patch);
         const bool surface = c.cwiseAbs().maxCoeff() == 1;
         outside.push_back(surface);
         mesh.node.push_back(x);

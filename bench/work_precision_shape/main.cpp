@@ -237,8 +237,8 @@ void particles(const Table& table, int cells, const std::vector<int>& spring_ste
   const Embedding embedding(mesh, t);
   std::vector<V> u(t.rest.size()), moved(mesh.node.size());
   const auto shape = [&]() -> const std::vector<V>& { return u; };
-  const auto draw = [&](const std::vector<V>& place, double d) {
-    for (std::size_t v = 0; v < moved.size(); ++v) moved[v] = place[v] - mesh.node[v];
+  const auto draw = [&](const std::vector<V>& position, double d) {
+    for (std::size_t v = 0; v < moved.size(); ++v) moved[v] = position[v] - mesh.node[v];
     embedding.write(moved, -d * V::UnitY(), u);
   };
   std::optional<MassSpring> springs;
@@ -248,7 +248,7 @@ void particles(const Table& table, int cells, const std::vector<int>& spring_ste
         "mass-spring " + std::to_string(steps) + " steps", "double", mesh.node.size(), setup,
         [&](double d) {
           const V force = springs->tick(-d * V::UnitY(), steps);
-          draw(springs->place(), d);
+          draw(springs->position(), d);
           return -force.y();
         },
         shape, [&] { springs->reset(); }, 0, 1, true);
@@ -262,7 +262,7 @@ void particles(const Table& table, int cells, const std::vector<int>& spring_ste
         name, "double", mesh.node.size(), body_setup,
         [&](double d) {
           const V force = body->tick(-d * V::UnitY(), s);
-          draw(body->place(), d);
+          draw(body->position(), d);
           return -force.y();
         },
         shape, [&] { body->reset(); }, 0, 1);

@@ -81,7 +81,7 @@ class MassSpring {
     return force;
   }
   void reset() { x_ = mesh_->node; }
-  [[nodiscard]] const std::vector<V>& place() const { return x_; }
+  [[nodiscard]] const std::vector<V>& position() const { return x_; }
 
  private:
   const Tetrahedra* mesh_;
@@ -142,7 +142,7 @@ class PositionBased {
     return force;
   }
   void reset() { x_ = mesh_->node; }
-  [[nodiscard]] const std::vector<V>& place() const { return x_; }
+  [[nodiscard]] const std::vector<V>& position() const { return x_; }
 
  private:
   struct Edge {

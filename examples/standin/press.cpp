@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 
-/// @file A hand for programs that know nothing of the stand-in: linked to one, it presses down and slides, and
-/// after 4 s of simulated time it pushes the stylus' button.
+/// @file A hand for programs that know nothing of the stand-in: linked to one, it presses down and slides,
+/// and after 4 s of simulated time it pushes the stylus' button.
 
 #include "standin.hpp"
 

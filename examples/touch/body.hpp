@@ -60,8 +60,8 @@ class Body {
   S reach_ = 0, volume_ = 0;
 };
 
-/// What options.object names: an exact surface, the heart, or a mesh file, the middle of whose box becomes the
-/// origin.
+/// What options.object names: an exact surface, the heart, or a mesh file, the middle of whose box becomes
+/// the origin.
 [[nodiscard]] Body make_body(const Options& options);
 
 }  // namespace touch

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 
-/// @file The example's solver: any object through its samples, on its shape at rest or on that of the last tick.
+/// @file The example's solver: any object through its samples, on its shape at rest or on that of the last
+/// tick.
 
 #include <palpate/detection/swept_pose.hpp>
 #include <palpate/geometry/deformed_surface.hpp>
@@ -38,8 +39,8 @@ Solver make_solver(const Body& body, const Tool& tool, Answer answer) {
   });
 }
 
-/// With --detect deformed the object takes the shape of each tick for the next one. The force is not passive by
-/// itself then: the device's passivity controller stands behind it.
+/// With --detect deformed the object takes the shape of each tick for the next one. The force is not passive
+/// by itself then: the device's passivity controller stands behind it.
 class SolverFeel final : public Feel {
  public:
   SolverFeel(const Options& options, const Body& body, const Tool& tool, Answer answer) {

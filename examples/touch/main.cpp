@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-/// @file The main job: a tool held by a haptic device presses and slides on an elastic object; the hand gets the
-/// force, the eye the shape. Writes forces.csv and contacts.csv, shapes and pictures. Without the vendor's SDK
-/// the stand-in device of examples/standin takes its place, with a scripted hand.
+/// @file The main job: a tool held by a haptic device presses and slides on an elastic object; the hand gets
+/// the force, the eye the shape. Writes forces.csv and contacts.csv, shapes and pictures. Without the
+/// vendor's SDK the stand-in device of examples/standin takes its place, with a scripted hand.
 
 #include <exception>
 

@@ -96,7 +96,7 @@ inline Options parse(int argc, char** argv) {
       if (end == text.c_str() || *end != '\0' || !(x > 0)) refuse(name + " needs a number > 0, got " + text);
       return x;
     };
-    const auto place = [&] {
+    const auto position = [&] {
       const std::string text = value();
       char* end = nullptr;
       const double x = std::strtod(text.c_str(), &end);
@@ -128,7 +128,7 @@ inline Options parse(int argc, char** argv) {
     else if (name == "--script")
       options.script = value();
     else if (name == "--at")
-      options.at_x = place(), options.at_z = place();
+      options.at_x = position(), options.at_z = position();
     else if (name == "--out")
       options.out = value();
     else if (name == "--replay")

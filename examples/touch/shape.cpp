@@ -13,8 +13,8 @@ DuffingMap<S> same_everywhere(const Body& body, const DuffingForce<S>::Params& l
 }
 
 Answer make_answer(const Options& options, const Body& body, const Tool& tool) {
-  // The paper's parameters (section VII), lengths in mm and m = 1 kg: F = 0.04 D + 0.3 D^3. Those of the heart
-  // are softer.
+  // The paper's parameters (section VII), lengths in mm and m = 1 kg: F = 0.04 D + 0.3 D^3. Those of the
+  // heart are softer.
   const DuffingForce<S>::Params law = options.object == "heart"
                                           ? DuffingForce<S>::Params{.c1 = 100, .c3 = 1e7}
                                           : DuffingForce<S>::Params{.c1 = 40, .c3 = 3e8};

@@ -18,8 +18,8 @@ namespace touch {
 
 inline constexpr std::size_t max_regions = 4;
 
-/// Silicone rubber of Shore hardness 00-30: E is the 100 % modulus of its maker's data sheet, 10 psi (Smooth-On,
-/// Ecoflex 00-30). The paper's own E was lost in the scan.
+/// Silicone rubber of Shore hardness 00-30: E is the 100 % modulus of its maker's data sheet, 10 psi
+/// (Smooth-On, Ecoflex 00-30). The paper's own E was lost in the scan.
 inline const palpate::IsotropicElasticity<S> rubber({.E = 69e3, .nu = 0.5});
 
 /// A deformation model chosen at run time; none: the shape stays the undeformed one.
@@ -84,8 +84,8 @@ template <palpate::DeformationModel D>
   return Shape(std::make_unique<Of>(std::move(model)));
 }
 
-/// What the body answers: its shape and the force law that belongs to it. One model gives both with `response`;
-/// the others have the law of the paper.
+/// What the body answers: its shape and the force law that belongs to it. One model gives both with
+/// `response`; the others have the law of the paper.
 struct Answer {
   Shape shape;
   palpate::DuffingMap<S> force;

@@ -77,7 +77,7 @@ class CandidateTreeSuite {
     const S rounding = S(100) * S(std::numeric_limits<float>::epsilon()) * S(0.1);
     int wrong = 0, near = 0, apart = 0;
     for (int i = 0; i < 500; ++i) {
-      const V c = random_place(around, random_);
+      const V c = random_position(around, random_);
       const S d = std::sqrt(mesh.closest(c).distance2);
       const S r = S(2 * unit(random_)) * d, away = std::abs(d - r);
       const bool touches = host.tree().touches(c, r);
@@ -114,17 +114,17 @@ class CandidateTreeSuite {
   void deformed(const TriangleMesh<S>& mesh, const MeshSurface<S>& body, Host& host) {
     std::uniform_real_distribution<double> phase(0, 6);
     const S height = S(0.05) * size(mesh), wave = S(8) / size(mesh), turn = S(phase(random_));
-    std::vector<V> places = mesh.vertices();
+    std::vector<V> positions = mesh.vertices();
     S largest = S(0);
-    for (V& v : places) {
+    for (V& v : positions) {
       const V u = height * V(std::sin(wave * v.y() + turn), std::cos(wave * v.z()), std::sin(wave * v.x()));
       largest = (std::max)(largest, u.norm());
       v += u;
     }
     const DepthOnly<MeshSurface<S>> without_search{body};
     DeformedSurface<MeshSurface<S>> now(body, mesh);
-    now.update(places);
-    host.move(places);
+    now.update(positions);
+    host.move(positions);
     distances(now.tree(), mesh.data(), host);
     for (const ToolPoints<S>& tool : {ball(mesh), pin(mesh)}) {
       // Depth of the undeformed shape, then with what has bulged out.
@@ -245,7 +245,7 @@ class CandidateTreeSuite {
     Pose<S> X;
     const V axis(S(unit(random_)), S(unit(random_)), S(unit(random_)));
     X.rotation = rotation_about<S>(unit_or<S>(axis, V::UnitX()), S(3) * S(unit(random_)));
-    X.translation = random_place(mesh.data(), random_);
+    X.translation = random_position(mesh.data(), random_);
     return X;
   }
 

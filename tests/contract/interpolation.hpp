@@ -55,8 +55,8 @@ template <Real S>
   return slot;
 }
 
-/// What an interpolation sees of a body. A type of the scalar only, so that the checks are compiled once for all
-/// bodies. Corners and contact are vertices of their own, so that the field there can be read.
+/// What an interpolation sees of a body. A type of the scalar only, so that the checks are compiled once for
+/// all bodies. Corners and contact are vertices of their own, so that the field there can be read.
 template <Real S>
 struct InterpolationBody {
   template <class Body>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  What every force law with memory must keep (law/force/concept.hpp), run on an example of each policy.
+/// @file  What every force law with memory must keep (law/force/concept.hpp), run on an example of each
+/// policy.
 ///
 /// An example is a type with
 ///     static constexpr double depth;     // a depth [m] at which the law is well in its range
@@ -54,7 +55,8 @@ struct StatefulForceLawSuite {
     double last = 0;
     for (int i = 0; i < corners; ++i) {
       const double kind = share(random);
-      // A quarter of the corners out of contact, a sixth held. Depths rounded to float: the same number in all.
+      // A quarter of the corners out of contact, a sixth held. Depths rounded to float: the same number in
+      // all.
       if (kind > 0.25 && kind < 0.42) {
       } else {
         last = kind < 0.25 ? 0 : Example::depth * share(random);
@@ -100,8 +102,8 @@ struct StatefulForceLawSuite {
     }
   }
 
-  // At depths up to the largest number and to infinity, in the state of a good depth: numbers that do not fall.
-  // After such a depth a good one gives a number again; so does what is carried to or from it.
+  // At depths up to the largest number and to infinity, in the state of a good depth: numbers that do not
+  // fall. After such a depth a good one gives a number again; so does what is carried to or from it.
   void ends_of_the_range() const {
     using L = std::numeric_limits<S>;
     std::vector<S> deep;
@@ -138,8 +140,8 @@ struct StatefulForceLawSuite {
   }
   static constexpr S ulps_of = S(64) * std::numeric_limits<S>::epsilon();
 
-  // Along a path: F against long double; the tangent is its derivative and the energy its integral at a constant
-  // state; the inverse; no force at the depth of no force and above.
+  // Along a path: F against long double; the tangent is its derivative and the energy its integral at a
+  // constant state; the inverse; no force at the depth of no force and above.
   void queries_of_a_state() const {
     State state{};
     typename Exact::State reference{};
@@ -185,8 +187,8 @@ struct StatefulForceLawSuite {
     }
   }
 
-  // Over random paths the work done on the body is never below what it stores, tick by tick; and a closed path
-  // gives nothing back.
+  // Over random paths the work done on the body is never below what it stores, tick by tick; and a closed
+  // path gives nothing back.
   void never_gains() const {
     constexpr int steps = 400;
     double least = 1, gross = 0, store = 0;
@@ -214,8 +216,8 @@ struct StatefulForceLawSuite {
       }
       CHECK(work >= 0);
     }
-    // Of one tick: where F has a kink within it (yield, contact lost) the trapezoid is off by up to dF dD/8 and the
-    // free body by as much, some (1/steps)^2 of the store; and the store's own rounding.
+    // Of one tick: where F has a kink within it (yield, contact lost) the trapezoid is off by up to dF dD/8
+    // and the free body by as much, some (1/steps)^2 of the store; and the store's own rounding.
     CHECK(least >= -store * static_cast<double>(4.0L / (steps * steps) + ulps<S>(16)));
     CHECK(gross > 0);
   }
@@ -249,8 +251,8 @@ struct StatefulForceLawSuite {
     CHECK(compared > 100);
   }
 
-  // A path cut into steps of 1e-4: no step of F is above the law's greatest stiffness times the motion, and what
-  // time does in a tick.
+  // A path cut into steps of 1e-4: no step of F is above the law's greatest stiffness times the motion, and
+  // what time does in a tick.
   void continuous() const {
     State state{};
     S depth = S(0), force = S(0), worst = S(0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 
-/// @file The chain to the motors: devices of every kind, poses and steps from bytes, and a solver that answers
-/// whatever the bytes say.
+/// @file The chain to the motors: devices of every kind, poses and steps from bytes, and a solver that
+/// answers whatever the bytes say.
 
 #include "bytes.hpp"
 

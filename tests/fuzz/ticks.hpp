@@ -69,8 +69,8 @@ void require_sound(const Solver& solver, const typename Solver::State& state,
             "the contacts' forces are the wrench's");
 }
 
-/// Through a body of this size [m]. `before(state, in)`: ahead of each tick; `sound(solver, state, X, is_step,
-/// result)`: what must hold after it.
+/// Through a body of this size [m]. `before(state, in)`: ahead of each tick; `sound(solver, state, X,
+/// is_step, result)`: what must hold after it.
 template <class Solver, class Before, class Sound>
 void walk(Solver& solver, double size, Bytes& in, const Before& before, const Sound& sound) {
   using S = typename Solver::Scalar;

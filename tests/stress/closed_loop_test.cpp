@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 
-/// @file Device, hand and solver in closed loop through the chain to the motors: taps, presses, slides, twists,
-/// rocks, stylus let go and thrown, over everything that a solver can be made of. Nothing is made at any time,
-/// and nothing buzzes. PALPATE_STRESS in the environment (tests/run --stress): more rates, grips and
-/// delays.
+/// @file Device, hand and solver in closed loop through the chain to the motors: taps, presses, slides,
+/// twists, rocks, stylus let go and thrown, over everything that a solver can be made of. Nothing is made at
+/// any time, and nothing buzzes. PALPATE_STRESS in the environment (tests/run --stress): more rates, grips
+/// and delays.
 
 #include <palpate/device/servo_chain.hpp>
 #include <palpate/geometry/box.hpp>
@@ -169,22 +169,22 @@ class OnBulge {
                                CoulombFriction<double>, SingleRegion<AreaSharing>>;
   explicit OnBulge(double K)
       : skin_(egg.mesh(600)),
-        places_(skin_.vertices()),
+        positions_(skin_.vertices()),
         solver_({.object = DeformedSurface<Ellipsoid<double>>(egg, skin_),
                  .tool = ball_points,
                  .force = LinearForce<double>({.k = K}),
                  .friction = friction}) {}
   TickResult<double> tick(const Pose<double>& X, double dt) noexcept {
     const TickResult<double> result = solver_.tick(X, dt);
-    for (std::size_t v = 0; v < places_.size(); ++v) {
-      places_[v] = skin_.vertices()[v];
+    for (std::size_t v = 0; v < positions_.size(); ++v) {
+      positions_[v] = skin_.vertices()[v];
       for (const ContactState<double>& c : solver_.contacts()) {
         const double a2 = (std::max)(4e-6, c.area / 3.1),
                      q = (skin_.vertices()[v] - c.origin()).squaredNorm() / a2;
-        places_[v] += 0.1 * c.displacement.norm() * q * std::exp(1 - q) * skin_.vertex_normals()[v];
+        positions_[v] += 0.1 * c.displacement.norm() * q * std::exp(1 - q) * skin_.vertex_normals()[v];
       }
     }
-    solver_.mutable_object().update(places_);
+    solver_.mutable_object().update(positions_);
     return result;
   }
   [[nodiscard]] std::span<const ContactState<double>> contacts() const noexcept { return solver_.contacts(); }
@@ -195,7 +195,7 @@ class OnBulge {
 
  private:
   TriangleMesh<double> skin_;
-  std::vector<V> places_;
+  std::vector<V> positions_;
   Solver solver_;
 };
 Scene region_on_bulge(double K) {
@@ -241,8 +241,8 @@ Scene resolved_ball_on_egg(double K) {
   return resolved("resolved ball, ellipsoid", egg, Sphere<double>({.radius = R}).mesh(1000), 2.5e-3,
                   0.75 * K / std::sqrt(R * 2e-3), R);
 }
-/// The same on a response field, by the workspace's scale s: F = K d at d = 2 mm of the hand, s d of the scene,
-/// but for the body's own part.
+/// The same on a response field, by the workspace's scale s: F = K d at d = 2 mm of the hand, s d of the
+/// scene, but for the body's own part.
 Scene resolved_ball_on_field(double K) {
   static const auto field = std::make_shared<const ResponseField>(test::ellipsoid_field(0.49, 300));
   using Elastic = ElasticContact<double, ResponseCompliance>;
@@ -293,11 +293,11 @@ struct Figures {  // the most of each over the plays with a scene; felt: the lea
   double made = 0, quantised = 0, steps = 0, felt = 9, bare = 0, bare_steps = 0;
 };
 
-/// Force at rest over the scene's at that place, after some ticks there.
+/// Force at rest over the scene's at that position, after some ticks there.
 double felt(const PlayFigures& f, const Scene& scene, const LoopDevice& device) {
   const Control bare = scene.bare(device);
   Pose<double> X;
-  X.translation = f.place;
+  X.translation = f.position;
   V force = V::Zero();
   for (int i = 0; i < 4; ++i) force = bare(X, device.period).force;
   return f.sent.force.dot(scene.ground.normal) / force.dot(scene.ground.normal);
@@ -357,8 +357,8 @@ TEST_CASE("stress: with the chain no hand gains anything from any scene, and not
   }
 }
 
-// A host that is not a real-time one: periods that jitter, ticks that never come. A lost tick must not make the
-// force drop, nor the controller take one wrench for another.
+// A host that is not a real-time one: periods that jitter, ticks that never come. A lost tick must not make
+// the force drop, nor the controller take one wrench for another.
 TEST_CASE("stress: with jitter of 30 % or a tick in twenty lost a soft scene does not buzz") {
   for (const double K : {500.0, 1000.0}) {
     const Scene scene = point_on_block(K);
@@ -376,8 +376,8 @@ TEST_CASE("stress: with jitter of 30 % or a tick in twenty lost a soft scene doe
   }
 }
 
-// Far above 2 f_c/Delta, 2,700 and 5,200 N/m, an arm with little friction would vibrate for ever on what quantised
-// positions hide; the contact is softened until it does not.
+// Far above 2 f_c/Delta, 2,700 and 5,200 N/m, an arm with little friction would vibrate for ever on what
+// quantised positions hide; the contact is softened until it does not.
 TEST_CASE("stress: a scene too stiff for the arm's friction does not go on vibrating") {
   for (const double K : {5200.0, 10000.0}) {
     const Scene scene = point_on_block(K);
@@ -395,9 +395,10 @@ TEST_CASE("stress: a scene too stiff for the arm's friction does not go on vibra
   }
 }
 
-// Quantised positions hide some of what a single touch makes, most where a stiff scene meets a slow servo: 2.4 mJ
-// more than their bound at 500 Hz, 0.25 mJ from 1 kHz on. The hand has lost in the end, in all 2,520 plays of the
-// long form; in one of them the tool goes on vibrating (0.04 N, 500 Hz, 10,000 N/m, d = 1, a slide).
+// Quantised positions hide some of what a single touch makes, most where a stiff scene meets a slow servo:
+// 2.4 mJ more than their bound at 500 Hz, 0.25 mJ from 1 kHz on. The hand has lost in the end, in all 2,520
+// plays of the long form; in one of them the tool goes on vibrating (0.04 N, 500 Hz, 10,000 N/m, d = 1, a
+// slide).
 TEST_CASE("stress: from 0.5 to 10 kHz, up to 10,000 N/m and 1 m/s no hand has gained anything in the end") {
   const bool thorough = std::getenv("PALPATE_STRESS") != nullptr;
   using Values = std::vector<double>;
@@ -426,8 +427,8 @@ TEST_CASE("stress: from 0.5 to 10 kHz, up to 10,000 N/m and 1 m/s no hand has ga
   CHECK(vibrating <= (thorough ? 1 : 0));
 }
 
-// The coupling alone, as stiff as the device answers passively in translation and in rotation, between a hand that
-// taps, slides, twists and rocks and two pins on a surface that the device cannot answer.
+// The coupling alone, as stiff as the device answers passively in translation and in rotation, between a hand
+// that taps, slides, twists and rocks and two pins on a surface that the device cannot answer.
 TEST_CASE(
     "stress: a virtual coupling serves a tool that turns: no hand gains anything, in force and torque") {
   using Solver = ContactSolver<Ellipsoid<double>, DuffingForce<double>, CoulombFriction<double>,
@@ -492,8 +493,8 @@ TEST_CASE(
               1e3 * without);
 }
 
-// What is left in the test above is quantisation's: with exact encoders a touch makes nothing, far beyond what
-// arms are asked to do.
+// What is left in the test above is quantisation's: with exact encoders a touch makes nothing, far beyond
+// what arms are asked to do.
 TEST_CASE(
     "stress: with exact encoders no touch makes energy up to 10,000 N/m, with up to two ticks of delay") {
   double most = 0;

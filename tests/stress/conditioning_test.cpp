@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 
-/// @file Right answers at the ends of the range: lengths from 1e-6 to 1e3 m, forces from 1e-12 to 1e6 N, moduli
-/// from 1 to 1e12 Pa, needles and slivers, contact at positions that are no ordinary ones, numbers too small to
-/// be normal. Every check has a value: a closed form, or the same answer in other units.
+/// @file Right answers at the ends of the range: lengths from 1e-6 to 1e3 m, forces from 1e-12 to 1e6 N,
+/// moduli from 1 to 1e12 Pa, needles and slivers, contact at positions that are no ordinary ones, numbers too
+/// small to be normal. Every check has a value: a closed form, or the same answer in other units.
 
 #include <palpate/device/gate.hpp>
 #include <palpate/elasticity/disc.hpp>
@@ -241,8 +241,8 @@ TEST_CASE("conditioning: laws from 1e-12 to 1e6 N give the depth back that gave 
 }
 
 TEST_CASE("conditioning: needles: depth at the tip and at the waist is the closed form's") {
-  // 1 : 1000, the longest allowed. At the tip depth is measured along the axis down to the centre of curvature,
-  // b^2/a below it; at the waist along the radius.
+  // 1 : 1000, the longest allowed. At the tip depth is measured along the axis down to the centre of
+  // curvature, b^2/a below it; at the waist along the radius.
   for (const double a : {1e-3, 1.0, 1e3}) {
     const double b = a / 1000;
     const Ellipsoid<double> needle({.axes = V(a, b, b)});
@@ -310,8 +310,8 @@ TEST_CASE("conditioning: centres, corners and edges have the answers that are st
   // From a sphere's centre: out along +x, as deep as the radius.
   auto ball = point_on(Sphere<double>({.radius = 0.25}), 1000);
   CHECK(force_at(ball, V::Zero()) == V(250, 0, 0));
-  // From an ellipsoid's centre, and from the tip's centre of curvature b^2/a: the + side of the smallest axis,
-  // and along the axis.
+  // From an ellipsoid's centre, and from the tip's centre of curvature b^2/a: the + side of the smallest
+  // axis, and along the axis.
   const Ellipsoid<double> egg({.axes = V(0.5, 0.25, 0.375)});
   CHECK(egg.closest(V::Zero()).position == V(0, 0.25, 0));
   CHECK(egg.closest(V::Zero()).distance == -0.25);

@@ -131,11 +131,11 @@ Figures measure(const char* name, const Friction& friction, Model model, int tic
   using Rest = ContactSolver<Ellipsoid<S>, LinearForce<S>, Friction, SingleRegion<AreaSharing>>;
   using Now =
       ContactSolver<DeformedSurface<Ellipsoid<S>>, LinearForce<S>, Friction, SingleRegion<AreaSharing>>;
-  std::vector<V> places = skin.vertices();
+  std::vector<V> positions = skin.vertices();
   const auto follow = [&](Now& solver, Energy& e) {
-    if (model.write(solver.contacts(), VertexBuffer<S>{.positions = places.front().data()}).vertices == 0)
+    if (model.write(solver.contacts(), VertexBuffer<S>{.positions = positions.front().data()}).vertices == 0)
       return;
-    solver.mutable_object().update(places);
+    solver.mutable_object().update(positions);
     e.bulge = (std::max)(e.bulge, solver.object().highest_bulge());
   };
   const auto now = [&](bool limited) {

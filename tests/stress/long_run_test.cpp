@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 
-/// @file What is right for a second must be right for an hour: stiction does not creep, a closed path gives the
-/// same force in every round, and hands that slide, chatter over an edge or hold two pins gain nothing.
+/// @file What is right for a second must be right for an hour: stiction does not creep, a closed path gives
+/// the same force in every round, and hands that slide, chatter over an edge or hold two pins gain nothing.
 /// PALPATE_STRESS in the environment (tests/run --stress): 1e9 ticks of stiction, hours at 1 kHz.
 
 #include <palpate/device/servo_chain.hpp>
@@ -60,7 +60,8 @@ Pins pins_on_egg() {
 }
 
 /// On the egg's upper side, pushed along the surface, far below the limit: so far, and turned so far about
-/// the normal. Eight poses in turn, a few micrometres apart: none is the last one, whose tick would be skipped.
+/// the normal. Eight poses in turn, a few micrometres apart: none is the last one, whose tick would be
+/// skipped.
 template <class Solver>
 Pose<double> held(const Solver&, long tick) {
   constexpr double depth = std::is_same_v<Solver, Point> ? 1.5e-3 : 2.5e-3;

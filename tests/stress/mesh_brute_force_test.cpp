@@ -27,7 +27,7 @@ TEST_CASE("stress: 100,000 queries of five meshes equal brute force") {
     long double worst = 0, off = 0;
     int wrong_side = 0, wrong_depth = 0, inside = 0;
     for (int i = 0; i < 20000; ++i) {
-      const Vec3<double> x = test::random_place(mesh, random);
+      const Vec3<double> x = test::random_position(mesh, random);
       const long double expected = test::brute_force_distance(mesh, x);
       const auto found = body.closest(x);
       const double depth = body.penetration(x).depth;

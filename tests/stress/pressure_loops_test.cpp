@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 
-// Energy over closed loops of a pin, without friction: pressed in, rocked and shifted, drawn out. The pressure
-// on the tool's surface is the gradient of an integral, so what is left is the points' quadrature.
+// Energy over closed loops of a pin, without friction: pressed in, rocked and shifted, drawn out. The
+// pressure on the tool's surface is the gradient of an integral, so what is left is the points' quadrature.
 
 #include <palpate/geometry/sphere.hpp>
 #include <palpate/law/force/linear.hpp>

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: MIT
 
-/// @file Contact resolved at the tool's points on random smooth closed paths that begin and end in the air: the
-/// tool is pressed, rolled, tilted, twisted, slid and lifted; one tool has two contacts that merge and part.
-/// Bodies: half-spaces behind a box's faces, a sphere, an ellipsoid and a cylinder; response fields of an
-/// ellipsoid and of a bent one, concave above like an organ, as a mesh; and float.
+/// @file Contact resolved at the tool's points on random smooth closed paths that begin and end in the air:
+/// the tool is pressed, rolled, tilted, twisted, slid and lifted; one tool has two contacts that merge and
+/// part. Bodies: half-spaces behind a box's faces, a sphere, an ellipsoid and a cylinder; response fields of
+/// an ellipsoid and of a bent one, concave above like an organ, as a mesh; and float.
 ///
 /// *Continuity.* In a tick force and torque change by at most
 ///
 ///     |dF| <= K |dx|,   |dtau| <= K |dx| L,   K = 1.32 2 E' sqrt(A/pi)
 ///
 /// with |dx| the largest displacement of any tool point and what two ticks' tolerance leaves of displacements
-/// (2e-4 of the depths' norm), A the area of the loaded cells, K the stiffness of a flat rectangle 10:1 of that
-/// area (1.32 of a disc's; no rigid tool with so much in contact is stiffer but a more slender one, a sideways
-/// push is softer, and whole cells are more than the contact), L the farthest point from the centre of mass.
-/// With friction 1 + mu times that, for its limit follows the pressure. It is checked at three step lengths:
-/// where the step is halved the bound is, and a jump would stay.
+/// (2e-4 of the depths' norm), A the area of the loaded cells, K the stiffness of a flat rectangle 10:1 of
+/// that area (1.32 of a disc's; no rigid tool with so much in contact is stiffer but a more slender one, a
+/// sideways push is softer, and whole cells are more than the contact), L the farthest point from the centre
+/// of mass. With friction 1 + mu times that, for its limit follows the pressure. It is checked at three step
+/// lengths: where the step is halved the bound is, and a jump would stay.
 ///
-/// *Energy.* Without friction a closed path of 1,000 ticks and more gives no work: less than 0.5 % of what goes
-/// to and fro on a half-space (points come in up to eight ticks late: with 500 ticks 1 %). On a body with a
-/// response field the force follows the regular part's mean gradient along the surface: -3 to 3 % on an
-/// ellipsoid, -4 to 5 % on a bent one that is thin. With friction the hand gains nothing.
+/// *Energy.* Without friction a closed path of 1,000 ticks and more gives no work: less than 0.5 % of what
+/// goes to and fro on a half-space (points come in up to eight ticks late: with 500 ticks 1 %). On a body
+/// with a response field the force follows the regular part's mean gradient along the surface: -3 to 3 % on
+/// an ellipsoid, -4 to 5 % on a bent one that is thin. With friction the hand gains nothing.
 ///
 /// PALPATE_STRESS in the environment (tests/run --stress): 10,000 paths and more.
 
@@ -66,7 +66,7 @@ struct Reach {
   double sweep, tilt, twist;
 };
 
-/// A place on a body's surface and its outward normal.
+/// A position on a body's surface and its outward normal.
 struct Place {
   V x, normal;
 };
@@ -104,8 +104,8 @@ class ClosedPath {
       dips_ = 1 + static_cast<int>(3 * std::abs(unit(random)));
     } while (!everywhere());
   }
-  /// At t in [0, 1], down to 0.8 mm. The tool's lowest point is its origin, and its y axis points away from the
-  /// body.
+  /// At t in [0, 1], down to 0.8 mm. The tool's lowest point is its origin, and its y axis points away from
+  /// the body.
   [[nodiscard]] Pose<double> at(double t) const {
     const auto wave = [&](std::size_t k, int n) { return std::sin(2 * pi * n * t + phase_[k]); };
     const V look = (towards_ + reach_.sweep * (wave(0, 1) * side_ + wave(1, 2) * towards_.cross(side_)));

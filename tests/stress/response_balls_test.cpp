@@ -51,8 +51,10 @@ void roll_over(const test::ResponseBody& body) {
     V last_force = V::Zero();
     for (int i = 0; i < steps; ++i) {
       walker.step(0.005 * h);
-      const Ball ball{
-          .position = walker.place, .normal = walker.normal, .radius = R, .depth = deepest * (1 + i) / steps};
+      const Ball ball{.position = walker.position,
+                      .normal = walker.normal,
+                      .radius = R,
+                      .depth = deepest * (1 + i) / steps};
       const double half_space = 4.0 / 3 * modulus * std::sqrt(R) * std::pow(ball.depth, 1.5);
       const auto force = [&](const Ball& at) { return tick.solve(at).on_body(at.normal); };
       const V F = force(ball);

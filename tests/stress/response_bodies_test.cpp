@@ -18,7 +18,7 @@ namespace {
 using namespace palpate;
 using V = Vec3<double>;
 
-// `convergence`: bound of the median change of force between the two solve meshes.
+// `convergence`: bound of the median change of force between the two boundary element meshes.
 void try_body(const test::ResponseBody& body, double convergence) {
   const TriangleBvh<double> tree(body.mesh);
   V low = body.mesh.vertices[0], high = low;
@@ -53,7 +53,7 @@ void try_body(const test::ResponseBody& body, double convergence) {
     }
     return m;
   };
-  const auto way_of =
+  const auto displacement_of =
       [](const ResponseContact<double>& c) {  // of its middle, and of its edge by the tool's rotation
         return std::hypot(c.displacement.norm(), c.radius * c.rotation.norm());
       };
@@ -65,12 +65,12 @@ void try_body(const test::ResponseBody& body, double convergence) {
     V last[2], last_torque[2], F[2], T[2];
     Both before_contacts, before_drawn;
     for (int i = 0; i < steps; ++i) {
-      const V from[2] = {one.place, two.place}, turned[2] = {one.normal, two.normal};
+      const V from[2] = {one.position, two.position}, turned[2] = {one.normal, two.normal};
       one.step(0.005 * h);
       two.step(0.005 * h);
       const auto contact = [&](const test::Walker& w) {
         return ResponseContact<double>{
-            .position = w.place,
+            .position = w.position,
             .normal = w.normal,
             .radius = a,
             .displacement = -d * w.normal + 0.3 * d * tangential(V(0.6, 0.3, 0.74), w.normal),
@@ -79,10 +79,12 @@ void try_body(const test::ResponseBody& body, double convergence) {
       const Both both = {contact(one), contact(two)};
       const std::size_t count = path % 2 == 0 ? 1 : 2;
       tick.solve(both.data(), count, F, T);
-      const double way = way_of(both[0]),
-                   stiff = mu * way / flat_punch_compliance(a, body.nu).normal;  // half-space, at most
-      const double moved = ((one.place - from[0]).norm() + (two.place - from[1]).norm()) / (std::min)(h, a) +
-                           (one.normal - turned[0]).norm() + (two.normal - turned[1]).norm();
+      const double displacement = displacement_of(both[0]),
+                   stiff =
+                       mu * displacement / flat_punch_compliance(a, body.nu).normal;  // half-space, at most
+      const double moved =
+          ((one.position - from[0]).norm() + (two.position - from[1]).norm()) / (std::min)(h, a) +
+          (one.normal - turned[0]).norm() + (two.normal - turned[1]).norm();
       double steep = 0;
       for (std::size_t c = 0; c < count; ++c) {
         REQUIRE(is_finite(F[c]));
@@ -115,12 +117,12 @@ void try_body(const test::ResponseBody& body, double convergence) {
             largest = (std::max)(
                 largest,
                 V(l[3 * k] - r[3 * k], l[3 * k + 1] - r[3 * k + 1], l[3 * k + 2] - r[3 * k + 2]).norm());
-          return largest / way;
+          return largest / displacement;
         };
         for (std::size_t k = 0; k < points.size(); ++k) {
           const V v(u[3 * k], u[3 * k + 1], u[3 * k + 2]);
           REQUIRE(is_finite(v));
-          most = (std::max)(most, v.norm() / way);
+          most = (std::max)(most, v.norm() / displacement);
         }
         if (i % 20 == 1 && moved < 0.2 && apart(u, before) > 0.1) {
           const auto change_of_field = [&](const Both& l, const Both& r) {
@@ -141,10 +143,11 @@ void try_body(const test::ResponseBody& body, double convergence) {
         linear.solve(both.data(), 1, &coarse);
         linear.displace(display, u.data(), 3);
         for (std::size_t k = 0; k < points.size(); ++k)
-          most_linear = (std::max)(most_linear, V(u[3 * k], u[3 * k + 1], u[3 * k + 2]).norm() / way);
+          most_linear =
+              (std::max)(most_linear, V(u[3 * k], u[3 * k + 1], u[3 * k + 2]).norm() / displacement);
         finer.solve(both.data(), 1, &better);
         stiffest = (std::max)(stiffest, coarse.norm() / stiff);
-        if (one.place.y() > body.fixed_below + 2 * a)
+        if (one.position.y() > body.fixed_below + 2 * a)
           change.push_back((coarse - better).norm() / better.norm());
       }
     }

@@ -62,8 +62,9 @@ double steepest(const N& neighbourhood) {
 }  // namespace
 
 // |b'| a <= 15/8 * 2 a R/(R^2 - a^2) = 2.5 with R = 2 a; the depth's own growth 1, the plane's turn on the
-// body's sharpest end (radius 13 mm, a up to 6 mm) 1. The field's part is that of interpolation_paths_test.cpp,
-// 40 (linear) and 160 (Phong) times a over the body's half diagonal, at most 0.15.
+// body's sharpest end (radius 13 mm, a up to 6 mm) 1. The field's part is that of
+// interpolation_paths_test.cpp, 40 (linear) and 160 (Phong) times a over the body's half diagonal, at most
+// 0.15.
 TEST_CASE("a contact that wanders, grows and sinks: no vertex jumps") {
   const AreaNeighbourhood<double> local({.reference_area = 2e-5});
   const double linear = steepest<LinearInterpolation<double>>(local),

@@ -12,7 +12,8 @@
 
 namespace palpate::test {
 
-/// A tool whose lower side is y = height(x, z) over the ellipse with semi-axes a, b; it touches at its origin.
+/// A tool whose lower side is y = height(x, z) over the ellipse with semi-axes a, b; it touches at its
+/// origin.
 template <class Height>
 [[nodiscard]] MeshData<double> bowl(double a, double b, const Height& height) {
   constexpr std::uint32_t rings = 20, sectors = 48;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  A haptic device in a hand, in closed loop with whatever makes its forces, in simulated time: the same
-/// numbers in every run.
+/// @file  A haptic device in a hand, in closed loop with whatever makes its forces, in simulated time: the
+/// same numbers in every run.
 
 #include <palpate/core/pose.hpp>
 #include <palpate/device/device_model.hpp>
@@ -103,11 +103,11 @@ class ClosedLoop {
   [[nodiscard]] double kinetic() const {
     return device_.mass * v.squaredNorm() / 2 + device_.inertia * w.squaredNorm() / 2;
   }
-  /// The most by which the motors, since they last rested, gave more than they had taken and friction lost: what
-  /// hand and arm have gained from a touch, at any time in it. Nothing in a passive loop.
+  /// The most by which the motors, since they last rested, gave more than they had taken and friction lost:
+  /// what hand and arm have gained from a touch, at any time in it. Nothing in a passive loop.
   [[nodiscard]] double most_made() const { return most_made_; }
-  /// What positions that are read half an encoder step wrong can hide of that from one who counts work by them:
-  /// half a step times all changes of the force in a touch, summed over axes; the most of any touch.
+  /// What positions that are read half an encoder step wrong can hide of that from one who counts work by
+  /// them: half a step times all changes of the force in a touch, summed over axes; the most of any touch.
   [[nodiscard]] double most_quantised() const { return most_quantised_; }
   [[nodiscard]] const LoopDevice& device() const { return device_; }
 
@@ -121,8 +121,8 @@ class ClosedLoop {
     return X;
   }
 
-  /// One tick. `control(pose, dt)`: wrench about the tip for the pose that the encoders read; `script(t)`: the
-  /// hand's target.
+  /// One tick. `control(pose, dt)`: wrench about the tip for the pose that the encoders read; `script(t)`:
+  /// the hand's target.
   template <class Script, class Control>
   void tick(const Script& script, Control&& control) {
     if (!(device_.lost > 0) || random() >= device_.lost) {
@@ -168,8 +168,8 @@ class ClosedLoop {
   /// [rad].
   [[nodiscard]] double amplitude() const { return (window_.high - window_.low).maxCoeff(); }
   [[nodiscard]] double angular_amplitude() const { return (window_.high_turn - window_.low_turn).maxCoeff(); }
-  /// How often it turned after more than two encoder steps, along the axis along which it did most: a tool that
-  /// vibrates goes on to, one that settles does so a few times.
+  /// How often it turned after more than two encoder steps, along the axis along which it did most: a tool
+  /// that vibrates goes on to, one that settles does so a few times.
   [[nodiscard]] int turns() const { return *std::max_element(window_.turns.begin(), window_.turns.end()); }
   /// Means since then.
   [[nodiscard]] Wrench<double> mean_wrench() const {
@@ -225,7 +225,8 @@ class ClosedLoop {
   };
   /// Half the sum of the speeds before and after a step of h, which it puts into `speed`; counts energies.
   V step(V& speed, const V& motor, const Spring& hand, const Friction& arm, double h) {
-    // With v0, v1 and their mean v: M (v1 - v0) / h = motor + k (stretch - h v / 2) + c (v_h - v) - b v - friction
+    // With v0, v1 and their mean v: M (v1 - v0) / h = motor + k (stretch - h v / 2) + c (v_h - v) - b v -
+    // friction
     const double drag = hand.stiffness * h / 2 + hand.damping + arm.viscous;
     const V pull = hand.stiffness * hand.stretch + hand.damping * hand.velocity;
     const V push = arm.inertia / h * speed + motor + pull - drag / 2 * speed;

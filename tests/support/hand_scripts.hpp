@@ -10,8 +10,8 @@
 
 namespace palpate::test {
 
-/// Where a hand plays: a point of the surface, the normal there, and a direction along it, all in the device's
-/// frame.
+/// Where a hand plays: a point of the surface, the normal there, and a direction along it, all in the
+/// device's frame.
 struct PlayGround {
   Vec3<double> at = Vec3<double>::Zero(), normal = Vec3<double>::UnitY(), along = Vec3<double>::UnitX();
 };
@@ -117,7 +117,7 @@ struct PlayFigures {
   double quantised = 0;          ///< ClosedLoop::most_quantised() [J]
   double deepest = 0;            ///< of the stylus below the surface [m]
   Wrench<double> sent;           ///< mean at rest
-  Vec3<double> place;            ///< mean at rest [m]
+  Vec3<double> position;         ///< mean at rest [m]
 };
 
 /// From so many turns on at rest a tool vibrates.
@@ -146,7 +146,7 @@ template <class Control>
     run(times.rest_to);
     f.amplitude = loop.amplitude(), f.angular_amplitude = loop.angular_amplitude();
     f.turns = loop.turns();
-    f.sent = loop.mean_wrench(), f.place = loop.mean_position();
+    f.sent = loop.mean_wrench(), f.position = loop.mean_position();
   }
   run(times.end);
   f.made = loop.most_made(), f.quantised = loop.most_quantised(), f.to_hand = loop.to_hand;

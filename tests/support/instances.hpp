@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file Templates that many tests use, compiled once: in instances.cpp. Parsed before every test where several
-/// are compiled together (tests/CMakeLists.txt); a third of a test's machine code was one of these.
+/// @file Templates that many tests use, compiled once: in instances.cpp. Parsed before every test where
+/// several are compiled together (tests/CMakeLists.txt); a third of a test's machine code was one of these.
 
 #include <palpate/contact/pressure_sum.hpp>
 #include <palpate/contact/region_sum.hpp>

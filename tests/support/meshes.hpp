@@ -125,7 +125,7 @@ template <Real S>
 /// A random position in the mesh's box grown by half; every fourth on the surface or within 1e-3 of the size
 /// of it.
 template <Real S>
-[[nodiscard]] inline Vec3<S> random_place(const MeshData<S>& mesh, std::mt19937_64& random) {
+[[nodiscard]] inline Vec3<S> random_position(const MeshData<S>& mesh, std::mt19937_64& random) {
   std::uniform_real_distribution<S> unit(S(0), S(1));
   Vec3<S> low = mesh.vertices[0], high = low;
   for (const Vec3<S>& v : mesh.vertices) {

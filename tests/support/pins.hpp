@@ -10,8 +10,8 @@
 
 namespace palpate::test {
 
-/// Pins of radius a [m] with flat tips in y = 0, at these places along x [m]; the nominal contact area is one
-/// pin's.
+/// Pins of radius a [m] with flat tips in y = 0, at these positions along x [m]; the nominal contact area is
+/// one pin's.
 inline ToolPoints<double> pins(double a, const std::vector<double>& at) {
   std::vector<Vec3<double>> points;
   for (const double x : at)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file  Response fields of the bodies of reference cases, with small solve meshes.
+/// @file  Response fields of the bodies of reference cases, with small boundary element meshes.
 
 #include <palpate/response/response_field.hpp>
 

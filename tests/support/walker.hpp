@@ -26,21 +26,21 @@ class Walker {
       : tree_(tree), random_(seed), distance_(distance) {
     const auto& t = mesh.triangles[random_() % mesh.triangles.size()];
     const Vec3<double>&a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
-    place = (a + b + c) / 3;
+    position = (a + b + c) / 3;
     normal = (b - a).cross(c - a).normalized();
     heading_ = perpendicular(normal);
   }
-  Vec3<double> place, normal;
+  Vec3<double> position, normal;
   void step(double length) {
     std::normal_distribution<double> turn(0, 0.1);
     heading_ =
         tangential(Vec3<double>(heading_ + Vec3<double>(turn(random_), turn(random_), turn(random_))), normal)
             .normalized();
-    const Vec3<double> probe = place + distance_ * normal + length * heading_;
+    const Vec3<double> probe = position + distance_ * normal + length * heading_;
     const auto at = tree_.closest(probe);
     const Vec3<double> out = probe - at.position;
-    if (out.dot(normal) > 0.3 * out.norm() && (at.position - place).norm() < 3 * length) {
-      place = at.position;
+    if (out.dot(normal) > 0.3 * out.norm() && (at.position - position).norm() < 3 * length) {
+      position = at.position;
       normal = out.normalized();
     } else {
       heading_ = -heading_;  // a hollow: the nearest point would jump

@@ -168,7 +168,7 @@ class Gate {
 
  private:
   using Bits = std::conditional_t<sizeof(S) == sizeof(std::uint32_t), std::uint32_t, std::uint64_t>;
-  static constexpr S min_limit = S(1e-6);
+  static constexpr S min_limit = S(1e-6);  // quotients by it are safe in float
 
   [[nodiscard]] static bool in_range(S x) noexcept {
     return is_finite(x) && x >= min_limit && x <= max_limit;

@@ -113,7 +113,7 @@ class Disc {
     const S phi_p = hertz_phi_p(), phi_2 = s * (F(-0.5) * ww_.im - a_ * wwR_.re),
             phi_zp = s * (z_ * wR_.im - iR_.im);
     Field u{z_ * tp * phi_2, tp * (z_ * phi_zp - (F(1) + b) * phi_p), z_ * phi_p};
-    if (b > F(0.03)) {
+    if (b > F(0.03)) {  // see above
       u.in_plane = u.in_plane + b * tp * hertz_L_pp();
       u.along = u.along + b * hertz_L_p();
     }

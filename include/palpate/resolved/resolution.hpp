@@ -15,16 +15,16 @@
 namespace palpate {
 
 namespace detail {
-/// Error of the force, largest of many places, where n points carry load and `across` would on a disc as wide
-/// as the contact is narrow. Found on balls and elliptic contacts 2:1 to 10:1, half-space, closed forms.
+/// Error of the force, largest at many positions, where n points carry load and `across` would on a disc as
+/// wide as the contact is narrow. Found on balls and elliptic contacts 2:1 to 10:1, half-space, closed forms.
 [[nodiscard]] inline double error_of_points(double n, double across) noexcept {
   return 2 / (across * std::sqrt(n));
 }
 }  // namespace detail
 
 /// Estimate of the force's error by the number of points, over the force; 0 without points. From above: 1 to
-/// 3 times the largest error found at any place, 5 times the mean. Of a single contact: several that touch at
-/// once are each as coarse as by themselves.
+/// 3 times the largest error found at any position, 5 times the mean. Of a single contact: several that touch
+/// at once are each as coarse as by themselves.
 ///
 ///     e = 2/(n_w sqrt(n)),   n_w = 5 pi (l/A + 1/12) <= n + 1,   l: least variance of positions by load
 ///

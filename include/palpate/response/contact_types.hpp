@@ -24,9 +24,9 @@ struct ResponseContact {
 /// True when a contact is finite, of sensible size, with a unit normal, turned by less than a half turn.
 template <Real S>
 [[nodiscard]] inline bool is_usable(const ResponseContact<S>& c) noexcept {
-  const S limit = S(1e6);
+  constexpr S limit = S(1e6), half_turn2 = S(9.8);  // a little below pi^2
   return is_finite(c.position) && is_finite(c.displacement) && is_finite(c.normal) && is_finite(c.radius) &&
-         is_finite(c.rotation) && c.rotation.squaredNorm() < S(9.8) && c.radius > S(1e-9) &&
+         is_finite(c.rotation) && c.rotation.squaredNorm() < half_turn2 && c.radius > S(1e-9) &&
          c.radius < limit && c.position.cwiseAbs().maxCoeff() < limit &&
          c.displacement.cwiseAbs().maxCoeff() < limit && c.normal.cwiseAbs().maxCoeff() < S(2) &&
          std::abs(c.normal.squaredNorm() - S(1)) < S(1e-3);

@@ -89,9 +89,9 @@ class ResponseField {
   ///
   ///     n.w n < -8 (1 - nu)/(3 pi^2 mu (l/2))      the disc's own mean displacement; l: the edges' length
   ///
-  /// A part is too thin for its elements there (ask for more vertices), or held by few of them. A contact
+  /// A part is too thin for its elements there (ask for more vertices), or fixed at few of them. A contact
   /// there goes on as on a half-space (`Status::near_field_only`). None is good. Set-up only.
-  [[nodiscard]] std::vector<Vec3<double>> unsound_places() const;
+  [[nodiscard]] std::vector<Vec3<double>> unsound_positions() const;
   [[nodiscard]] const LoadMesh& load_mesh() const noexcept { return load_mesh_; }
   [[nodiscard]] const PatchTable& table() const noexcept { return table_; }
   [[nodiscard]] const MidEdgeTable& mid_edges() const noexcept { return mid_edges_; }

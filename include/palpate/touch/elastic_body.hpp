@@ -48,8 +48,8 @@ using FixedPart = std::variant<FixedPredicate, std::vector<std::uint32_t>>;
 /// Reports a mesh that is not closed and oriented (the first defect of mesh_report.hpp), one longer than 10 m
 /// or shorter than 1 mm, which is one in other units than metres, E below 10 Pa, which is one in kPa or MPa,
 /// a fixed part that holds nothing or everything, with the mesh's box, a body whose response is none at more
-/// than a tenth of its places (`ResponseField::unsound_places()`, which tells of fewer), a cache that is
-/// damaged or cannot be written, and what ResponseField reports.
+/// than a tenth of its positions (`ResponseField::unsound_positions()`, which tells of fewer), a cache that
+/// is damaged or cannot be written, and what ResponseField reports.
 class ElasticBody {
  public:
   struct Params {

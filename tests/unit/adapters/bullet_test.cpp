@@ -30,8 +30,8 @@ struct Host {
   BulletTree tree() const { return BulletTree(*shape); }
   /// By turns the ways that BulletTree's docstring allows.
   template <Real S>
-  void move(const std::vector<Vec3<S>>& places) {
-    write(places);
+  void move(const std::vector<Vec3<S>>& positions) {
+    write(positions);
     if (!quantized)
       shape->buildOptimizedBvh();
     else if (moves++ % 2 == 0)
@@ -40,11 +40,11 @@ struct Host {
       shape->partialRefitTree(-corner, corner);
   }
   template <Real S>
-  void write(const std::vector<Vec3<S>>& places) {
-    coordinates.resize(3 * places.size());
-    for (std::size_t i = 0; i < places.size(); ++i)
+  void write(const std::vector<Vec3<S>>& positions) {
+    coordinates.resize(3 * positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i)
       for (std::size_t k = 0; k < 3; ++k)
-        coordinates[3 * i + k] = static_cast<btScalar>(places[i][static_cast<int>(k)]);
+        coordinates[3 * i + k] = static_cast<btScalar>(positions[i][static_cast<int>(k)]);
   }
 
   const btVector3 corner{btScalar(0.2), btScalar(0.2),

@@ -25,22 +25,22 @@ struct Host {
   FclTree<BV> tree() const { return FclTree<BV>(model); }
   /// By turns the three ways that FclTree's docstring allows.
   template <Real S>
-  void move(const std::vector<Vec3<S>>& places) {
+  void move(const std::vector<Vec3<S>>& positions) {
     const bool bottom_up = std::same_as<BV, fcl::AABB<F>>;
     if (moves++ % 2 == 0) {
       model.beginReplaceModel();
-      model.replaceSubModel(cast(places));
+      model.replaceSubModel(cast(positions));
       model.endReplaceModel(true, bottom_up);
     } else {
       model.beginUpdateModel();
-      model.updateSubModel(cast(places));
+      model.updateSubModel(cast(positions));
       model.endUpdateModel(true, bottom_up);
     }
   }
   template <Real S>
-  static std::vector<fcl::Vector3<F>> cast(const std::vector<Vec3<S>>& places) {
+  static std::vector<fcl::Vector3<F>> cast(const std::vector<Vec3<S>>& positions) {
     std::vector<fcl::Vector3<F>> all;
-    for (const Vec3<S>& p : places) all.push_back(p.template cast<F>());
+    for (const Vec3<S>& p : positions) all.push_back(p.template cast<F>());
     return all;
   }
 

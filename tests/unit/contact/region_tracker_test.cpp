@@ -15,14 +15,14 @@ namespace {
 /// line, which the tool's own order may not follow.
 struct Line {
   explicit Line(int n)
-      : tool(places(n), std::vector<double>(std::size_t(n), 1e-6), {.contact_area = 1e-4}),
+      : tool(positions(n), std::vector<double>(std::size_t(n), 1e-6), {.contact_area = 1e-4}),
         graph(tool, 1.5e-3),
         tracker(tool.size()),
         index(tool.size()) {
     for (std::uint32_t i = 0; i < tool.size(); ++i) index[tool.original(i)] = i;
   }
 
-  static std::vector<Vec3<double>> places(int n) {
+  static std::vector<Vec3<double>> positions(int n) {
     std::vector<Vec3<double>> p;
     for (int i = 0; i < n; ++i) p.emplace_back(1e-3 * i, 0, 0);
     return p;
@@ -31,7 +31,7 @@ struct Line {
   Status touch(const std::vector<std::uint32_t>& now) {
     touching = now;
     std::vector<std::uint32_t> indices;
-    for (const std::uint32_t place : now) indices.push_back(index[place]);
+    for (const std::uint32_t position : now) indices.push_back(index[position]);
     return tracker.update(graph, indices, [&](std::size_t i) { return tool.point(indices[i]); });
   }
   [[nodiscard]] const RegionSlot& slot_at(std::uint32_t point) const {

@@ -51,7 +51,7 @@ TEST_CASE_TEMPLATE(
   for (int i = 0; i < 1000; ++i) {
     const Vec3<S> v(S(unit(random)), S(unit(random)), S(unit(random)));
     alignas(64) std::array<Vec3<S>, 16>
-        list;  // 12 or 24 bytes apart: at every place that a register may begin
+        list;  // 12 or 24 bytes apart: at every position that a register may begin
     list.fill(v);
     for (const Vec3<S>& here : list) CHECK(stable_norm(here) == stable_norm(list[0]));
     CHECK(stable_norm(Vec3<S>(S(2) * v)) == S(2) * stable_norm(v));

@@ -25,7 +25,7 @@ template <Real S>
 struct Host {
   explicit Host(const MeshData<S>& mesh) : bvh(mesh) {}
   OwnTree<S> tree() const { return {&bvh}; }
-  void move(const std::vector<Vec3<S>>& places) { bvh.move_all(places); }
+  void move(const std::vector<Vec3<S>>& positions) { bvh.move_all(positions); }
   TriangleBvh<S> bvh;
 };
 

@@ -25,7 +25,7 @@ TEST_CASE("position order: coordinates that differ by rounding alone are equal, 
   CHECK_FALSE(order.less(0, 1, 0));
   CHECK(order.less(0, 2, 0));  // along x there is no doubt
   CHECK(order.less(2, 0, 1));
-  // In one place: by area, last by number.
+  // In one position: by area, last by number.
   CHECK(order.less(0, 3, 0));
   CHECK_FALSE(order.less(3, 0, 0));
   CHECK_FALSE(order.less(0, 0, 0));

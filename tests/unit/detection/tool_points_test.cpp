@@ -189,7 +189,7 @@ TEST_CASE_TEMPLATE("tool points: every ball holds its points and its children's 
   }
 }
 
-TEST_CASE_TEMPLATE("tool points: one point, and many at one place", S, float, double) {
+TEST_CASE_TEMPLATE("tool points: one point, and many at one position", S, float, double) {
   const Sphere<S> body({.radius = S(0.03)});
   for (const std::size_t n : {1u, 8u, 9u, 100u}) {
     const ToolPoints<S> tool(std::vector<Vec3<S>>(n, Vec3<S>::UnitX()), std::vector<S>(n, S(1)),

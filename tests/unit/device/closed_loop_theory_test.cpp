@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 
 /// @file What theory says of a wall F = -K x - B v, held from tick to tick, on an arm of mass m with viscous
-/// friction b and Coulomb friction f_c, v the backward difference: the simulator of closed loops must show it.
+/// friction b and Coulomb friction f_c, v the backward difference: the simulator of closed loops must show
+/// it.
 
 #include <support/check.hpp>
 #include <support/closed_loop.hpp>
@@ -55,8 +56,8 @@ double growth(const LoopDevice& device, double K, double B) {
 }
 
 /// Of an arm that nothing slows down, in a wall: what the motors put in and friction does not take [J], over
-/// `ticks` of the speed -v, as many of +v, and what the delay still has to give. Before the way back the arm is
-/// moved by `shift` [m].
+/// `ticks` of the speed -v, as many of +v, and what the delay still has to give. Before the way back the arm
+/// is moved by `shift` [m].
 double made_at_constant_speed(LoopDevice device, double K, double v, double start, int ticks,
                               double shift = 0) {
   device.mass = 1e12;  // 1 N for a second: 1e-12 m/s
@@ -147,9 +148,9 @@ TEST_CASE("closed loop: the same seed gives the same bits; delay, jitter and los
   }
 }
 
-// The formula is the first order in omega T, omega = sqrt(K/m): that is, in (b + B) T / m. Up to 0.04 of it, B
-// up to 1 N s/m and three ticks of delay it is right within 4 %; at 0.08 and B = 3 it is 6 % too high without
-// delay, 12 % with three ticks.
+// The formula is the first order in omega T, omega = sqrt(K/m): that is, in (b + B) T / m. Up to 0.04 of it,
+// B up to 1 N s/m and three ticks of delay it is right within 4 %; at 0.08 and B = 3 it is 6 % too high
+// without delay, 12 % with three ticks.
 TEST_CASE(
     "closed loop: in permanent contact the stiffest stable wall is 2 (b + B)/((2 d + 1) T) within 5 %") {
   for (const double m : {0.045, 0.15})

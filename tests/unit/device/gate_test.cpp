@@ -197,7 +197,8 @@ TEST_CASE_TEMPLATE("gate, heat budget: peaks pass, a force held for ever ends at
 }
 
 TEST_CASE_TEMPLATE("gate, heat budget: it is the mean square that counts", S, float, double) {
-  // L N in one tick of four: q = L^2/4, and L = 2 - (2 q - 1): L = sqrt(7) - 1. By its mean, L/4, it would stay 2.
+  // L N in one tick of four: q = L^2/4, and L = 2 - (2 q - 1): L = sqrt(7) - 1. By its mean, L/4, it would
+  // stay 2.
   auto gate = armed<S>({.max_force = S(2), .continuous_force = S(1), .heat_time = S(2)});
   S felt = S(0);
   for (int i = 0; i < 60000; ++i) {

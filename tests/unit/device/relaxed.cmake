@@ -1,5 +1,5 @@
-# The thread sanitizer must see a hand-over without ordering: the test in handover_test.cpp against a copy of the two
-# headers in which every memory order is relaxed. Each class must be reported as a data race.
+# The thread sanitizer must see a hand-over without ordering: the test in handover_test.cpp against a copy of
+# the two headers in which every memory order is relaxed. Each class must be reported as a data race.
 
 set(relaxed ${CMAKE_CURRENT_BINARY_DIR}/relaxed)
 foreach(header triple_buffer spsc_ring)

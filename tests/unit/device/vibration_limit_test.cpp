@@ -25,7 +25,8 @@ struct Spring {
   double k = 4000, torsion = 0;  // [N/m], [N m/rad]; pressed by 1 mm or turned by 0.1 rad
 };
 
-/// The scale after `seconds` of y(t), a depth [m] (or an angle [rad]), while the tool slides at `drift` [m/s].
+/// The scale after `seconds` of y(t), a depth [m] (or an angle [rad]), while the tool slides at `drift`
+/// [m/s].
 double scale_after(double seconds, const std::function<double(double)>& y, const Spring& spring = {},
                    double drift = 0) {
   detail::VibrationLimit<double> limit(device);

@@ -23,12 +23,13 @@ const V axes(0.06, 0.04, 0.04);
 constexpr auto cap = [](const auto& p) { return p.y() <= -0.036; };
 
 template <class S>
-ContactState<S> pressed(const Vec3<S>& place, const Vec3<S>& normal, const Vec3<S>& displacement, S radius) {
+ContactState<S> pressed(const Vec3<S>& position, const Vec3<S>& normal, const Vec3<S>& displacement,
+                        S radius) {
   ContactState<S> c{};
   c.points = 1;
   c.normal = normal;
   c.displacement = displacement;
-  c.centre = place + displacement;
+  c.centre = position + displacement;
   c.force = c.friction = Vec3<S>::Zero();
   c.area = S(3.14159265358979L) * radius * radius;
   return c;
@@ -140,7 +141,7 @@ TEST_CASE("half-spaces: what is drawn is contact, base and rigid motion of the f
       const V u = contact(body.mesh.vertices[v]) + base.field(y, load) + detail::rigid_motion(motion, y);
       worst = (std::max)(worst, (body.u(v) - u).norm());
     }
-    CHECK(worst < 2e-8);  // places are kept in float: 4e-9 m at 0.06 m, and a sum of three
+    CHECK(worst < 2e-8);  // positions are kept in float: 4e-9 m at 0.06 m, and a sum of three
     CHECK(body.most() > 1e-3);
   }
 }
@@ -170,10 +171,10 @@ TEST_CASE("half-spaces: turned body and contact, turned field") {
   MeshData<double> turned = one.mesh;
   for (V& v : turned.vertices) v = turn * v;
   Drawn other(turned, [&](const V& p) { return (turn.transpose() * p).y() <= -0.036 + 1e-12; });
-  const V place(0.03, 0.04 * std::sqrt(0.75), 0),
-      n = V(place.x() / 0.0036, place.y() / 0.0016, 0).normalized(), D = -0.002 * n + V(0, 0, 0.001);
-  one.write({pressed<double>(place, n, D, 0.004)});
-  other.write({pressed<double>(turn * place, turn * n, turn * D, 0.004)});
+  const V position(0.03, 0.04 * std::sqrt(0.75), 0),
+      n = V(position.x() / 0.0036, position.y() / 0.0016, 0).normalized(), D = -0.002 * n + V(0, 0, 0.001);
+  one.write({pressed<double>(position, n, D, 0.004)});
+  other.write({pressed<double>(turn * position, turn * n, turn * D, 0.004)});
   CHECK((other.model.forces()[0] - turn * one.model.forces()[0]).norm() <
         1e-6 * one.model.forces()[0].norm());
   for (std::size_t v = 0; v < one.position.size(); ++v)
@@ -182,14 +183,14 @@ TEST_CASE("half-spaces: turned body and contact, turned field") {
 
 TEST_CASE("half-spaces: a contact that appears without force changes nothing, and none pulls") {
   Drawn alone = egg(), both = egg();
-  const V place(0.03, 0.04 * std::sqrt(0.75), 0),
-      n = V(place.x() / 0.0036, place.y() / 0.0016, 0).normalized();
+  const V position(0.03, 0.04 * std::sqrt(0.75), 0),
+      n = V(position.x() / 0.0036, position.y() / 0.0016, 0).normalized();
   alone.write({top});
-  both.write({top, pressed<double>(place, n, V::Zero(), 0.002)});
+  both.write({top, pressed<double>(position, n, V::Zero(), 0.002)});
   CHECK(both.model.forces()[1].norm() == 0);
   for (std::size_t v = 0; v < alone.position.size(); ++v) CHECK(both.position[v] == alone.position[v]);
   // Two that press: each gets its D, so each takes some of the other's work.
-  both.write({top, pressed<double>(place, n, V(-0.002 * n), 0.005)});
+  both.write({top, pressed<double>(position, n, V(-0.002 * n), 0.005)});
   CHECK(both.model.forces()[0].dot(V(0, -1, 0)) > 0);
   CHECK(both.model.forces()[1].dot(-n) > 0);
   CHECK(both.model.forces()[0].norm() < alone.model.forces()[0].norm());
@@ -230,9 +231,9 @@ TEST_CASE("half-spaces: the field is continuous while a contact wanders") {
     direction = (direction + 2e-3 * speed).normalized();
     if (direction.y() < -0.5)
       direction.y() = -direction.y(), direction.normalize(), speed.y() = std::abs(speed.y());
-    const V place = direction / direction.cwiseQuotient(axes).norm(),
-            n = place.cwiseQuotient(axes.cwiseAbs2()).normalized();
-    drawn.write({pressed<double>(place, n, V(-0.002 * n), 0.004 + 0.001 * std::sin(0.05 * i))});
+    const V position = direction / direction.cwiseQuotient(axes).norm(),
+            n = position.cwiseQuotient(axes.cwiseAbs2()).normalized();
+    drawn.write({pressed<double>(position, n, V(-0.002 * n), 0.004 + 0.001 * std::sin(0.05 * i))});
     double change = 0;
     for (std::size_t v = 0; v < before.size(); ++v)
       change = (std::max)(change, (drawn.position[v] - before[v]).norm());

@@ -68,7 +68,7 @@ TEST_CASE_TEMPLATE("bvh: closest point and ball equal brute force", S, float, do
     // Coordinates are rounded to epsilon of the size; the distance is a few such operations.
     const auto rounding = test::ulps<S>(8) * static_cast<long double>(size);
     for (int i = 0; i < 400; ++i) {
-      const Vec3<S> x = test::random_place(mesh, random);
+      const Vec3<S> x = test::random_position(mesh, random);
       const auto found = tree.closest(x, static_cast<std::uint32_t>(random() % mesh.triangles.size()));
       CHECK_ABSOLUTE(std::sqrt(found.distance2), std::fabs(test::brute_force_distance(mesh, x)), rounding);
       CHECK_ABSOLUTE((found.position - x).norm(), std::sqrt(found.distance2), rounding);
@@ -96,8 +96,8 @@ TEST_CASE_TEMPLATE("bvh: the ray's first hit equals brute force", S, float, doub
     const TriangleBvh<S> tree(mesh);
     int hits = 0;
     for (int i = 0; i < 400; ++i) {
-      const Vec3<S> origin = test::random_place(mesh, random);
-      const Vec3<S> d = (test::random_place(mesh, random) - origin) * S(100);
+      const Vec3<S> origin = test::random_position(mesh, random);
+      const Vec3<S> d = (test::random_position(mesh, random) - origin) * S(100);
       const auto found = tree.raycast(origin, d);
       if (i < 20) {  // few, because it is slow: every triangle for itself, in a tree of its own
         S first = (std::numeric_limits<S>::max)();
@@ -145,24 +145,24 @@ TEST_CASE_TEMPLATE("bvh: refit equals rebuild", S, float, double) {
     TriangleBvh<S> tree(mesh), whole(mesh);
     for (int step = 0; step < 20; ++step) {
       std::vector<std::uint32_t> which;
-      std::vector<Vec3<S>> place;
+      std::vector<Vec3<S>> position;
       const std::size_t first = random() % mesh.vertices.size(), count = 1 + random() % 40;
       for (std::size_t v = first; v < (std::min)(first + count, mesh.vertices.size()); ++v) {
         const Vec3<S> by(shift(random), shift(random), shift(random));
         mesh.vertices[v] += by;
         which.push_back(static_cast<std::uint32_t>(v));
-        place.push_back(mesh.vertices[v]);
+        position.push_back(mesh.vertices[v]);
       }
       const test::HeapCount heap;
-      tree.move(which, place);
+      tree.move(which, position);
       whole.move_all(mesh.vertices);
       CHECK(heap.allocations() == 0);
       check_boxes(tree);
       const TriangleBvh<S> fresh(mesh);
       for (int i = 0; i < 50; ++i) {
-        const Vec3<S> x = test::random_place(mesh, random);
+        const Vec3<S> x = test::random_position(mesh, random);
         // The least of the same numbers, whatever the order. A triangle's distance is worked out at two
-        // places, and rounds differently where products are contracted in one of them only.
+        // positions, and rounds differently where products are contracted in one of them only.
         const S distance = std::sqrt(fresh.closest(x).distance2);
         const auto size = static_cast<long double>(size_of(mesh));
         CHECK_ABSOLUTE(std::sqrt(tree.closest(x).distance2), distance, test::ulps<S>(8) * size);
@@ -193,7 +193,7 @@ TEST_CASE_TEMPLATE("bvh: queries and moves that are not finite", S, float, doubl
   CHECK(tree.closest(away).triangle < mesh.triangles.size());
 }
 
-TEST_CASE("bvh: many triangles at one place do not deepen the tree") {
+TEST_CASE("bvh: many triangles at one position do not deepen the tree") {
   MeshData<double> mesh;
   mesh.vertices = {Vec3<double>(0, 0, 0), Vec3<double>(1, 0, 0), Vec3<double>(0, 1, 0)};
   mesh.triangles.assign(3000, {0, 1, 2});

@@ -24,13 +24,13 @@ const TriangleMesh<double> skin(ball.mesh(4000));
 
 // The sphere with a smooth hill of height h about +y, 0.6 rad wide; h < 0: a dent.
 std::vector<V> hill(double h) {
-  std::vector<V> places = skin.vertices();
-  for (V& v : places) {
+  std::vector<V> positions = skin.vertices();
+  for (V& v : positions) {
     const V n = v.normalized();
     const double t = (std::max)(0.0, 1 - std::acos((std::min)(1.0, n.y())) / 0.6);
     v += h * t * t * (3 - 2 * t) * n;
   }
-  return places;
+  return positions;
 }
 
 DeformedSurface<Sphere<double>> raised(double h) {
@@ -79,7 +79,7 @@ TEST_CASE("deformed surface: a dent or no deformation leaves the undeformed dept
   const DeformedSurface<Sphere<double>> still(ball, skin);
   std::mt19937_64 random(7);
   for (int i = 0; i < 1000; ++i) {
-    const V x = test::random_place(skin.data(), random);
+    const V x = test::random_position(skin.data(), random);
     CHECK(dented.penetration(x).depth == ball.penetration(x).depth);
     CHECK(still.penetration(x).gradient == ball.penetration(x).gradient);
   }
@@ -91,7 +91,7 @@ TEST_CASE("deformed surface: every contact of the undeformed body is kept, and s
   std::uniform_real_distribution<double> size(0, 0.01);
   int more = 0, apart = 0;
   for (int i = 0; i < 20000; ++i) {
-    const V x = test::random_place(skin.data(), random);
+    const V x = test::random_position(skin.data(), random);
     const double own = ball.penetration(x).depth, now = body.penetration(x).depth;
     // A hill's sides lean, so x - b can be a little less deep than x: by b (1 - cos) of the lean across the
     // foot's normal and the radius, below 1e-4 of a radius here.
@@ -107,7 +107,7 @@ TEST_CASE("deformed surface: every contact of the undeformed body is kept, and s
   CHECK(apart > 1000);
 }
 
-TEST_CASE("deformed surface: depth follows place and shape without a jump") {
+TEST_CASE("deformed surface: depth follows position and shape without a jump") {
   DeformedSurface<Sphere<double>> body(ball, skin);
   double before = 0;
   body.update(hill(0.004));
@@ -189,20 +189,20 @@ TEST_CASE("deformed surface: moving some vertices equals moving all, without hea
   const std::vector<V> to = hill(0.004);
   DeformedSurface<Sphere<double>> all(ball, skin), some(ball, skin);
   std::vector<std::uint32_t> which;
-  std::vector<V> places;
+  std::vector<V> positions;
   for (std::uint32_t v = 0; v < to.size(); ++v) {
     if (to[v] == skin.vertices()[v]) continue;
     which.push_back(v);
-    places.push_back(to[v]);
+    positions.push_back(to[v]);
   }
   CHECK(which.size() < to.size() / 4);
   const test::HeapCount heap;
   all.update(to);
-  some.update(which, places);
+  some.update(which, positions);
   std::mt19937_64 random(9);
   int differ = 0;
   for (int i = 0; i < 2000; ++i) {
-    const V x = test::random_place(skin.data(), random);
+    const V x = test::random_position(skin.data(), random);
     differ += all.penetration(x).depth != some.penetration(x).depth;
   }
   CHECK(heap.allocations() == 0);
@@ -210,12 +210,12 @@ TEST_CASE("deformed surface: moving some vertices equals moving all, without hea
   CHECK(all.highest_bulge() == some.highest_bulge());
 }
 
-TEST_CASE("deformed surface: places and queries that are not finite") {
+TEST_CASE("deformed surface: positions and queries that are not finite") {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   DeformedSurface<Sphere<double>> body(ball, skin);
-  std::vector<V> places = hill(0.004);
-  places[5] = V(nan, 0, 0);
-  body.update(places);
+  std::vector<V> positions = hill(0.004);
+  positions[5] = V(nan, 0, 0);
+  body.update(positions);
   CHECK(is_finite(body.highest_bulge()));
   CHECK(body.penetration(V(nan, 0, 0)).depth == 0);
   CHECK(!body.separated(V(0, 0, 1), nan));

@@ -71,7 +71,7 @@ TEST_CASE_TEMPLATE("mesh surface: distance, inside, depth and separation equal b
     const MeshSurface<S> body{TriangleMesh<S>(mesh)};
     const auto rounding = test::ulps<S>(8) * static_cast<long double>(body.upper().cwiseAbs().maxCoeff());
     for (int i = 0; i < 400; ++i) {
-      const Vec3<S> x = test::random_place(mesh, random);
+      const Vec3<S> x = test::random_position(mesh, random);
       const long double expected = test::brute_force_distance(mesh, x);
       const auto found = body.closest(x);
       CHECK_ABSOLUTE(found.distance, expected, rounding);
@@ -288,8 +288,8 @@ TEST_CASE_TEMPLATE("mesh surface: many points at once are as one by one, close t
         // The same formulas in another order.
         CHECK_ABSOLUTE(in.depth[i], one.depth, test::ulps<S>(8) * static_cast<long double>(size));
         const Vec3<S> g(in.gradient_x[i], in.gradient_y[i], in.gradient_z[i]);
-        // Of up to 64 triangles, in another order; beside an edge the blend of two faces turns by the rounding
-        // of positions over the depth.
+        // Of up to 64 triangles, in another order; beside an edge the blend of two faces turns by the
+        // rounding of positions over the depth.
         const S turn = one.depth > S(0) ? size / one.depth : S(0);
         CHECK_ABSOLUTE((g - one.gradient).norm(), 0,
                        test::ulps<S>(64) + test::ulps<S>(1) * static_cast<long double>(turn));

@@ -66,7 +66,7 @@ TEST_CASE("sampled surface: depth stays within 1.62 spacings of the mesh's, what
     std::mt19937_64 random(4);
     double worst = 0;
     for (int i = 0; i < 3000; ++i) {
-      const V x = test::random_place(mesh, random);
+      const V x = test::random_position(mesh, random);
       const double d = exact.closest(x).distance, depth = body.penetration(x).depth;
       worst = (std::max)(worst, std::abs(depth - (std::max)(-d, 0.0)));
     }
@@ -84,7 +84,7 @@ TEST_CASE("sampled surface: the gradient is the depth's derivative, and turns wi
   std::mt19937_64 random(5);
   int inside = 0;
   for (int i = 0; i < 3000; ++i) {
-    const V x = test::random_place(coarse, random);
+    const V x = test::random_position(coarse, random);
     const auto in = body.penetration(x);
     if (!(in.depth > 1e-5)) continue;
     ++inside;

@@ -110,7 +110,7 @@ TEST_CASE("mesh: a triangle that names a vertex twice") {
   CHECK_REFUSED(mesh, "1 triangles name a vertex twice, first triangle 4; drop them");
 }
 
-TEST_CASE("mesh: vertices at one place, as STL files have them") {
+TEST_CASE("mesh: vertices at one position, as STL files have them") {
   Mesh mesh;
   const Mesh good = tetrahedron();
   for (const auto& t : good.triangles) {
@@ -124,7 +124,7 @@ TEST_CASE("mesh: vertices at one place, as STL files have them") {
   CHECK_REFUSED(mesh, "8 vertices stand where another does, first vertices 0 and 3; weld them");
 }
 
-TEST_CASE("mesh: 0 and -0 are one place") {
+TEST_CASE("mesh: 0 and -0 are one position") {
   Mesh mesh = together(tetrahedron(), tetrahedron());
   for (std::size_t v = 4; v < 8; ++v) mesh.vertices[v] = V(-mesh.vertices[v] - V(3, 0, 0));
   mesh.vertices[4] = V(-0.0, 0, -0.0);

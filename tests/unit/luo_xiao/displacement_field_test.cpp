@@ -314,8 +314,8 @@ TEST_CASE_TEMPLATE("the tool's face: D within a, the field of w D beyond R, fall
     if (r > R * (1 + 1e-9)) CHECK(u[i] == around[i]);
     if (i > 0 && r < R) CHECK(u[i].norm() <= u[i - 1].norm() + noise);
   }
-  // b = 1 - f(t), f = t^3 (10 - 15 t + 6 t^2): |f'| <= 15/8, |f''| <= 10/sqrt(3); t = (r^2 - a^2)/(R^2 - a^2).
-  // D - g changes slowly: half as much again for its part.
+  // b = 1 - f(t), f = t^3 (10 - 15 t + 6 t^2): |f'| <= 15/8, |f''| <= 10/sqrt(3); t = (r^2 - a^2)/(R^2 -
+  // a^2). D - g changes slowly: half as much again for its part.
   const double per_square = 1 / (R * R - a * a), steepest = 2 * R * per_square,
                curved = 10 / std::sqrt(3.0) * steepest * steepest + 15.0 / 8 * 2 * per_square;
   CHECK(Profile::kink(u, around) <= 1.5 * curved * D * Profile::step);

@@ -231,7 +231,7 @@ TEST_CASE("Fig. 11, head and tail on a cube: nothing moves more than under the t
   check_all("tail, float", cube, cube_f, tail);
 }
 
-TEST_CASE("Fig. 10, a mallet along an ellipsoid: the same at five places of its path") {
+TEST_CASE("Fig. 10, a mallet along an ellipsoid: the same at five positions of its path") {
   for (const double x : {-0.036, -0.02, 0.0, 0.01, 0.03}) {
     const Pressed pressed = press(ellipsoid, mallet(), paper, x, 8e-3);
     check_all("mallet, double", ellipsoid, ellipsoid, pressed);

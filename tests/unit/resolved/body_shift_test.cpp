@@ -67,7 +67,8 @@ TEST_CASE("a ball bends a wall by more than its thickness: the dent's and the fi
   constexpr double turned = 1.5 * deepest / at_height;
   CHECK_RELATIVE(bends * before + dent(before), deepest, 3 * R * turned / at_height);
   CHECK(stiffest < 1.5 / bends);  // no jump; by the same, and the dent, it grows to 1.06
-  // And back, without friction, as it came; two solves to 1e-4 of the depths, here of the dent. Measured: 3e-5.
+  // And back, without friction, as it came; two solves to 1e-4 of the depths, here of the dent. Measured:
+  // 3e-5.
   for (int i = steps; i > 0; --i)
     CHECK(std::abs(push(body.tick(against_wall(i * step), 1e-3).wrench) - forces[std::size_t(i)]) <=
           0.01 * before);
@@ -92,10 +93,11 @@ TEST_CASE("a tool that comes back from a bent wall in one tick still touches it,
   }
 }
 
-TEST_CASE("friction draws a post's top aside by five widths of the contact: the force grows with the way") {
+TEST_CASE(
+    "friction draws a post's top aside by five widths of the contact: the force grows with the travel") {
   const V post(0.02, 0.05, 0.02);
   auto body = standing(post, CoulombFriction<double>({.mu_static = 3, .mu_dynamic = 3}));
-  constexpr double deep = 5e-4, way = 8e-3;
+  constexpr double deep = 5e-4, travel = 8e-3;
   Pose<double> X;
   const auto tick = [&](double x, double d) {
     X.translation = V(x, post.y() - d, 0);
@@ -104,7 +106,7 @@ TEST_CASE("friction draws a post's top aside by five widths of the contact: the 
   for (int i = 1; i <= 50; ++i) (void)tick(0, deep * i / 50);
   double at_first = 0, last = 0, before = 0;
   for (int i = 1; i <= 800; ++i) {
-    last = tick(way * i / 800, deep);
+    last = tick(travel * i / 800, deep);
     if (i == 100) at_first = last;
     CHECK(last > before);
     before = last;
@@ -164,7 +166,7 @@ TEST_CASE("a solve that is cut short while the body has given way by far more th
   CHECK(astray == 0);
 }
 
-TEST_CASE("where a tool touches at two places the body is shifted by no more than either has given way") {
+TEST_CASE("where a tool touches at two positions the body is shifted by no more than either has given way") {
   using Shift = detail::BodyShift<double, false>;
   constexpr std::size_t capacity = 16;
   detail::PointSystem system(capacity, 0.02f, false);

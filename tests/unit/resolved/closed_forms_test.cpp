@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Contact resolved at the tool's points on a half-space: elliptic contact, a cone, and torsion, against closed
-// forms.
+// Contact resolved at the tool's points on a half-space: elliptic contact, a cone, and torsion, against
+// closed forms.
 #include <palpate/geometry/box.hpp>
 #include <palpate/geometry/cylinder.hpp>
 #include <palpate/geometry/sphere.hpp>
@@ -59,7 +59,8 @@ Elliptic elliptic(double complement) {
 
 TEST_CASE("elliptic contact 1:1, 2:1, 5:1, 10:1: Hertz's force within 2 % with 50 and 100 points") {
   // The tool is the paraboloid whose pressure is p0 sqrt(1 - x^2/a^2 - z^2/b^2): curvatures, depth and force
-  // follow [johnson1985], 4.26. Measured, 50 and 100 points: 0.5, -0.3 %; 0.2, 0.0 %; -1.6, -0.1 %; -1.2, -1.0 %.
+  // follow [johnson1985], 4.26. Measured, 50 and 100 points: 0.5, -0.3 %; 0.2, 0.0 %; -1.6, -0.1 %; -1.2,
+  // -1.0 %.
   const double a = 2e-3, p0 = 0.02 * E_plane;
   for (const double ratio : {1., 2., 5., 10.}) {
     const double b = a / ratio, depth = p0 / E_plane * b * elliptic(b / a).K;
@@ -116,8 +117,8 @@ TEST_CASE(
 TEST_CASE("a ball that is turned slips from the rim inwards: Lubkin's torque within 2 % of the limit") {
   // Rotation and torque when all outside c a slips [lubkin1951], K, E of the modulus sqrt(1 - c^2):
   //   theta = mu p0/(2 G) phi(c),  phi = K - E,   T = 8/3 mu p0 a^3 (c^3 phi(c) + 3 int_c^1 s^2 phi(s) ds),
-  // from rigid rotations of discs of all radii above c a, whose sum is the slipping traction mu p there (Abel's
-  // equation). At c = 0: 3 pi/16 mu P a.   Measured: -1.6 to 1.4 % with 39 points.
+  // from rigid rotations of discs of all radii above c a, whose sum is the slipping traction mu p there
+  // (Abel's equation). At c = 0: 3 pi/16 mu P a.   Measured: -1.6 to 1.4 % with 39 points.
   const double R = 0.015, mu = 0.3, d = 0.001, a = std::sqrt(R * d);
   Solver<CoulombFriction<double>> solver =
       on_half_space(Sphere<double>({.radius = R}).mesh(2000), 0.0012,

@@ -70,8 +70,8 @@ Pose<float> pose_at(int i, double height) {
   return X;
 }
 
-/// Both at poses that float can hold. Each solves to 1e-4 of the depths (`tolerance`): they may differ by twice
-/// that. Measured: 2.5e-5 of the force at most, 4e-5 of force times radius.
+/// Both at poses that float can hold. Each solves to 1e-4 of the depths (`tolerance`): they may differ by
+/// twice that. Measured: 2.5e-5 of the force at most, 4e-5 of force times radius.
 template <class Wide, class Narrow>
 void compare(Wide wide, Narrow narrow, double height) {
   Narrow again = narrow;

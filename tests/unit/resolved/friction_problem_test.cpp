@@ -18,8 +18,8 @@ constexpr int n = 12;
 constexpr float mu = 0.3f;
 constexpr float tangential = 1.5f;
 
-/// Points that press on a slender part: each with a compliance of its own, 1 along m and 1.5 across it, and all
-/// together with C, up to 1,000 times that, along directions of its own.
+/// Points that press on a slender part: each with a compliance of its own, 1 along m and 1.5 across it, and
+/// all together with C, up to 1,000 times that, along directions of its own.
 struct SlenderPart {
   VectorList m;
   Mat3<float> common;
@@ -62,7 +62,7 @@ Solved solve(const SlenderPart& part, const Mat3<float>& taken_for) {
     const V normal = part.m[i];
     d[i] = normal.dot(u[i]) - (i % 3 == 2 ? 0.5f : 0.f);  // those apart by 0.5
     lists.anchor.set(i, u[i] - normal.dot(u[i]) * normal + (i % 3 == 1 ? 0.7f : 0.f) * across(i));
-    lists.held[i] = lists.per_mu[i] = 1;
+    lists.anchored[i] = lists.per_mu[i] = 1;
   }
   Solved out{.left = detail::solve_loads(
                  n, lists, part.m, d.data(), {1, tangential, taken_for}, 1e-3f, 50,

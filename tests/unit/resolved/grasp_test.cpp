@@ -26,8 +26,8 @@ auto solver_of(const Compliance& compliance) {
                   cap_samples(R, 6e-3, 8e-4));
 }
 
-/// Two equal fingers on a block: one solver, a state for each. All that they know of each other is the block's
-/// pose.
+/// Two equal fingers on a block: one solver, a state for each. All that they know of each other is the
+/// block's pose.
 template <class Solver>
 class Grasp {
  public:

@@ -60,21 +60,21 @@ TEST_CASE("a ball: the exact sphere's force within 1 % with 30 to 130 points in 
   CHECK(most > 100);
 }
 
-TEST_CASE("a ball: the contact's area within 8 % with 20 points or more, 2 % in the mean of places") {
-  // Measured at single places, by how the rim falls among the cells: -7.7 to +3.7 %.
+TEST_CASE("a ball: the contact's area within 8 % with 20 points or more, 2 % in the mean of positions") {
+  // Measured at single positions, by how the rim falls among the cells: -7.7 to +3.7 %.
   Solver<> solver = on_half_space(ball, 0.0012);
   double mean = 0;
-  constexpr int places = 60;
-  for (int i = 0; i < places; ++i) {
+  constexpr int positions = 60;
+  for (int i = 0; i < positions; ++i) {
     Pose<double> X;
     X.rotation = Eigen::AngleAxisd(0.1 * i, V(1, 0.3 * i, 0.2).normalized()).toRotationMatrix();
-    const double d = 5e-4 + 1.5e-3 * i / places;
+    const double d = 5e-4 + 1.5e-3 * i / positions;
     X.translation = V(0, R - d, 0);
     (void)solver.tick(X);
     REQUIRE(solver.state().points().size() >= 19);
     const double a = rigid_sphere_radius(R, d), exact = std::numbers::pi * a * a;
     CHECK_RELATIVE(solver.contacts()[0].area, exact, 0.08);
-    mean += (solver.contacts()[0].area / exact - 1) / places;
+    mean += (solver.contacts()[0].area / exact - 1) / positions;
   }
   CHECK(std::abs(mean) <= 0.02);
 }
@@ -179,8 +179,8 @@ TEST_CASE("two balls on one tool feel each other's dent as point forces far apar
 }
 
 TEST_CASE("around a box's edge the force is continuous, and does not depend on the way there") {
-  // Normals turn by 90 degrees and walls of the ball come in. Steps of some 2 um; stiffness 1.5 F/d. Measured:
-  // 3.4 times that; a jump would be 200 times.
+  // Normals turn by 90 degrees and walls of the ball come in. Steps of some 2 um; stiffness 1.5 F/d.
+  // Measured: 3.4 times that; a jump would be 200 times.
   constexpr double r = 0.006, d = 6e-4, ball_middle = r - d;
   Solver<> solver({.object = Box<double>({.half = V(0.03, 0.025, 0.02)}),
                    .tool = ToolPoints<double>(

@@ -70,14 +70,14 @@ TEST_CASE("a plate that stands on a corner: no force beyond a half-space's, wher
   const double hertz = 4. / 3 * E / (1 - nu * nu) * std::sqrt(R) * std::pow(deep, 1.5);
   bool finite = true, said = false;
   double largest = 0, work = 0, spent = 0, jump = 0;
-  for (int place = 0; place < 25; ++place) {
+  for (int position = 0; position < 25; ++position) {
     Pose<double> X;
     X.rotation = Eigen::Quaterniond::FromTwoVectors(V::UnitY(), V::UnitZ()).toRotationMatrix();
     solver.reset();
     V before = V::Zero();
     bool near_only = false;
     for (int i = 0; i <= 400; ++i) {
-      const V x(0.01 + 0.02 * (place % 5), 0.01 + 0.02 * (place / 5),
+      const V x(0.01 + 0.02 * (position % 5), 0.01 + 0.02 * (position / 5),
                 size.z() - deep * (1 - std::abs(i - 200) / 200.));
       const auto felt = solver.tick({X.rotation, x}, 1e-3);
       const V force = felt.wrench.force;

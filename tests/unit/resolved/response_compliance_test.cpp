@@ -49,8 +49,9 @@ Pose<double> at(const V& x) {
 
 TEST_CASE(
     "a ball as a mesh on an ellipsoid: nonlinear finite elements' force within 2.5 %, 2 % rms, to 8 mm") {
-  // Force [N] of a frictionless ball of 15 mm on rubber of 1.5 MPa, nu 0.49, computed with 10-node tetrahedra;
-  // two meshes differ by 0.3 to 1 %. By depth [mm]. Measured: 0.4 to 1.5 %, of linear elasticity 4 %.
+  // Force [N] of a frictionless ball of 15 mm on rubber of 1.5 MPa, nu 0.49, computed with 10-node
+  // tetrahedra; two meshes differ by 0.3 to 1 %. By depth [mm]. Measured: 0.4 to 1.5 %, of linear elasticity
+  // 4 %.
   struct Row {
     double depth, force;
   };
@@ -77,7 +78,7 @@ TEST_CASE("without friction a closed path gives no energy: pressed, rolled over 
   constexpr int ticks = 2000;
   for (int i = 0; i <= ticks; ++i) {
     const double t = 2 * std::numbers::pi * i / ticks;
-    // Down at one place, up at another, back through the air.
+    // Down at one position, up at another, back through the air.
     const V x(0.012 * std::sin(t), 0.04 + R - 0.0015 + 0.003 * std::sin(t + 0.8) + 0.001,
               0.006 * std::cos(t));
     const auto result = solver.tick(at(x));

@@ -63,7 +63,7 @@ TEST_CASE("a contact that sticks takes its surface along: aside of a convex body
 }
 
 TEST_CASE(
-    "where a ball slides on rubber each point has mu times pressure, area of the ball and way along it") {
+    "where a ball slides on rubber each point has mu times pressure, area of the ball and stretch along it") {
   constexpr double mu = 0.3, deep = 0.003, side = 0.1, E = 1e6;
   const SurfaceSamples<double> points =
       contact_samples(TriangleMesh<double>(Sphere<double>({.radius = R}).mesh(2000)), 0.0012);
@@ -93,13 +93,13 @@ TEST_CASE(
                    t = (loads[i].force - q * loads[i].direction).norm(),
                    cosine = (V(x, height, 0) - point.position).normalized().dot(point.normal);
       steepest = (std::min)(steepest, cosine);
-      // sqrt(1 + g^2) of area, sqrt(1 + g^2/2) of way, g: slope; the surface is pressed together by
+      // sqrt(1 + g^2) of area, sqrt(1 + g^2/2) of stretch, g: slope; the surface is pressed together by
       // (1 - 2 nu) p/(4 mu), E = 2 (1 + nu) mu.
-      const double area = 1 / cosine, way = std::sqrt((1 + area * area) / 2),
+      const double area = 1 / cosine, stretch = std::sqrt((1 + area * area) / 2),
                    strain = -(1 - 2 * nu) * point.pressure * (1 + nu) / (2 * E);
       // Points that have just come in have no tractions yet; normals are a cell's mean, pressures the last
       // tick's. Measured: 0.43 %.
-      if (t > 0) CHECK_RELATIVE(t, mu * q * area * way * (1 + strain), 0.01);
+      if (t > 0) CHECK_RELATIVE(t, mu * q * area * stretch * (1 + strain), 0.01);
     }
     CHECK(steepest < 0.95);
   }

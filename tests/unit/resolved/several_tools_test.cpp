@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Several tools on one body, each with a state of its own, that feel each other's loads: against one tool that
-// has the points of all.
+// Several tools on one body, each with a state of its own, that feel each other's loads: against one tool
+// that has the points of all.
 #include <palpate/law/friction/coulomb.hpp>
 #include <palpate/law/friction/none.hpp>
 
@@ -80,7 +80,7 @@ class TwoFingers {
 
   [[nodiscard]] std::size_t allocations() const { return allocations_; }
   /// Where the first finger's force acts on the undeformed body.
-  [[nodiscard]] V pressed_place() const {
+  [[nodiscard]] V pressed_position() const {
     Loads loads;
     states_[0].loads(loads);
     V sum = V::Zero();
@@ -220,12 +220,12 @@ TEST_CASE("a finger feels the block that another pushes to it, by more than it i
   }
 }
 
-TEST_CASE("two fingers that lift a block hold the same places of it") {
+TEST_CASE("two fingers that lift a block hold the same points of it") {
   const ResponseCompliance body = block();
   TwoFingers hands(body, CoulombFriction<double>({.mu_static = 5, .mu_dynamic = 5}));
   constexpr double deep = 2e-3;
   (void)hands.press(deep, 6, fingers);
-  const V before = hands.pressed_place();
+  const V before = hands.pressed_position();
   const auto lifted = [](double up) {
     Poses out = fingers(deep);
     for (auto& X : out) X.translation.y() += up;
@@ -233,7 +233,7 @@ TEST_CASE("two fingers that lift a block hold the same places of it") {
   };
   for (int i = 1; i <= 100; ++i) (void)hands.tick(lifted(1e-5 * i));
   for (int i = 0; i < 6; ++i) (void)hands.tick(lifted(1e-3));
-  const V after = hands.pressed_place();
+  const V after = hands.pressed_position();
   // A sixteenth of a cell's width. Measured: 3e-7 m.
   CHECK_ABSOLUTE(after.y(), before.y(), 0.05e-3);
 }
@@ -337,7 +337,8 @@ TEST_CASE("a ball that sticks is dragged along by what another does") {
   const double pulled = before[1].wrench.force.x() - felt[1].wrench.force.x(),
                dragged = felt[0].wrench.force.x() - before[0].wrench.force.x();
   CHECK(pulled > 0.3);
-  // Cerruti: the surface there moves by T / (2 pi mu r); a disc that sticks resists with 16/3 mu a (nu = 1/2).
+  // Cerruti: the surface there moves by T / (2 pi mu r); a disc that sticks resists with 16/3 mu a (nu =
+  // 1/2).
   const double a = std::cbrt(0.75 * before[0].wrench.force.y() * R * 0.75 / E);
   // The formula is for a small a over the distance; what it leaves out is of the order of its square.
   CHECK_RELATIVE(dragged / pulled, 8 * a / (3 * std::numbers::pi * apart), a * a / (apart * apart));

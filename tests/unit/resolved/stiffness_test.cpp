@@ -64,7 +64,7 @@ TEST_CASE("the stiffness of a ball without friction, and the largest on the way 
   press.steps = 20;
   press.from.translation = V(0, 1e-5, 0);
   const double d = 1e-3 - 1e-5, a = std::sqrt(R * d * (1 - d / (3 * R)));
-  // It rises with the depth; nothing resists across or about the centre, but for the points' places.
+  // It rises with the depth; nothing resists across or about the centre, but for the points' positions.
   const LargestStiffness<double> most = largest_stiffness(solver, press);
   CHECK_RELATIVE(most.translation, 2 * E / (1 - nu * nu) * a, 0.02);
   CHECK(most.rotation < 0.05 * most.translation * R * R);

@@ -77,16 +77,16 @@ TEST_CASE_TEMPLATE("points of a leaf press by their depth, less where the tool's
         const detail::TouchingPoint at = leaf.point(k, 7, 0.f);
         CHECK(at.point == 7);
         CHECK(at.depth == leaf.depth[k]);
-        const Vec3<double> place(double(x.x[k] - origin.x()), double(x.y[k] - origin.y()),
-                                 double(x.z[k] - origin.z()));
+        const Vec3<double> position(double(x.x[k] - origin.x()), double(x.y[k] - origin.y()),
+                                    double(x.z[k] - origin.z()));
         // Unit vectors, one of them rotated: some ten roundings of 6e-8 each. Positions within 17 mm: 1e-9 m
         // each, and the origin is taken off in S on both sides.
         CHECK((at.m.template cast<double>() - m).norm() < 1e-6);
         CHECK((at.outward.template cast<double>() - outward).norm() < 1e-6);
-        CHECK((at.x.template cast<double>() - place).norm() < 1e-8);
+        CHECK((at.x.template cast<double>() - position).norm() < 1e-8);
         const double weight = depth * double(tool.area(begin + k));
         deepest = (std::max)(deepest, depth), volume += weight;
-        volume_x += weight * place, volume_m += weight * m;
+        volume_x += weight * position, volume_m += weight * m;
       }
       // As of a depth above, which is 1e-5 of a millimetre; sums of 16 round by 1e-6 more. x: up to 17 mm.
       CHECK(std::abs(leaf.deepest - deepest) <= 1e-5 * 1e-3);

@@ -17,13 +17,13 @@ std::shared_ptr<const ResponseField> small_field() {
       ResponseField::Params{.E = 1e5, .nu = 0.5, .mesh = {.vertices = 60}, .threads = 1});
   return field;
 }
-ContactState<double> push(const V& place, const V& normal, double depth, double area) {
+ContactState<double> push(const V& position, const V& normal, double depth, double area) {
   ContactState<double> c{};
   c.id = 1;
   c.points = 1;
   c.normal = normal;
   c.displacement = -depth * normal;
-  c.centre = place + c.displacement;
+  c.centre = position + c.displacement;
   c.area = area;
   return c;
 }

@@ -91,12 +91,12 @@ TEST_CASE("load mesh: where no free crease is, loads are put at the nodes alone"
 
 TEST_CASE("gradients along the surface: of a linear function exactly, at every node of a flat face") {
   const ElementMesh solve = element_mesh(cube_mesh(), 1e-6, 150);
-  const LoadPositions places(solve);
-  const LoadMesh touch = places.load_mesh();
+  const LoadPositions positions(solve);
+  const LoadMesh touch = positions.load_mesh();
   const V slope(1, 2, -3);
-  for (std::size_t k = 0; k < places.solved_or_fixed(); ++k) {
+  for (std::size_t k = 0; k < positions.solved_or_fixed(); ++k) {
     V gradient = V::Zero();
-    for (const auto& w : places.gradient(k)) gradient += slope.dot(touch.nodes()[w.node].source) * w.g;
+    for (const auto& w : positions.gradient(k)) gradient += slope.dot(touch.nodes()[w.node].source) * w.g;
     const V along = tangential(slope, touch.nodes()[k].normal);
     CHECK((gradient - along).norm() < 1e-5 * along.norm());  // the fit's least moments are 1e-6 of the others
   }
@@ -104,8 +104,8 @@ TEST_CASE("gradients along the surface: of a linear function exactly, at every n
 
 TEST_CASE("sharpened loads: a quadratic's mean over a flat face, by linear interpolation between the nodes") {
   const ElementMesh solve = element_mesh(test::box_mesh(V(0.1, 0.02, 0.1), 8), 1e-6, 400);
-  const LoadPositions places(solve);
-  const LoadMesh touch = places.load_mesh();
+  const LoadPositions positions(solve);
+  const LoadMesh touch = positions.load_mesh();
   for (const V& by : {V(1, 0, 0), V(0, 0, 1), V(1, 0, 1), V(0.5, 0, -1)}) {
     const auto h = [&by](const V& x) { return by.x() * x.x() * x.x() + by.z() * x.z() * x.z(); };
     double linear = 0, sharpened = 0, right = 0;
@@ -115,11 +115,11 @@ TEST_CASE("sharpened loads: a quadratic's mean over a flat face, by linear inter
       bool known = true;
       for (std::size_t c = 0; c < 3; ++c) {
         x[c] = touch.nodes()[t[c]].source;
-        if (t[c] >= places.solved_or_fixed() || places.sharpening(t[c]).empty()) {
+        if (t[c] >= positions.solved_or_fixed() || positions.sharpening(t[c]).empty()) {
           known = false;
           break;
         }
-        for (const auto& [node, weight] : places.sharpening(t[c]))
+        for (const auto& [node, weight] : positions.sharpening(t[c]))
           missing += weight * h(touch.nodes()[node].source) / 3;
       }
       if (!known || touch.nodes()[t[0]].normal.y() < 0.99) continue;

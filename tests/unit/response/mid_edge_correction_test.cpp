@@ -44,14 +44,14 @@ TEST_CASE("a quadratic field is drawn exactly on a face, near a contact; far fro
   detail::MidEdgeCorrection<1> bent(table, n);
   const float reach = 0.06f;
   std::size_t checked = 0;
-  for (const V& place :
+  for (const V& position :
        {V(0.03, 0.1, 0.03), V(0.07, 0.1, 0.06)}) {  // the second: nothing is left of the first
-    bent.read(field.data(), none.data(), n, list(contact_at(place)), reach);
+    bent.read(field.data(), none.data(), n, list(contact_at(position)), reach);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const auto& c = mesh.triangles[t];
       const V &p = mesh.vertices[c[0]], &q = mesh.vertices[c[1]], &r = mesh.vertices[c[2]];
       const V middle = (p + q + r) / 3;
-      const double away = (middle - place).norm();
+      const double away = (middle - position).norm();
       detail::MidEdgeCorrection<1>::OfTriangle of_triangle{};
       const bool any = bent.find(t, of_triangle);
       if (away > reach + 0.005 + 0.02) CHECK(!any);
@@ -78,13 +78,13 @@ TEST_CASE(
     return V(x.x() * x.x() + x.z(), x.squaredNorm(), 0.1 - x.z() * x.z());
   };
   const std::size_t n = ResponseField::padded(mesh.vertices.size());
-  std::vector<float> place(3 * n, 0.f), field(4 * n, 0.f);
+  std::vector<float> position(3 * n, 0.f), field(4 * n, 0.f);
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     for (std::size_t i = 0; i < 3; ++i) {
-      place[i * n + v] = float(mesh.vertices[v][Eigen::Index(i)]);
+      position[i * n + v] = float(mesh.vertices[v][Eigen::Index(i)]);
       field[4 * v + i] = float(bulge(mesh.vertices[v])[Eigen::Index(i)]);
     }
-  const std::array<const float*, 3> vertices{place.data(), &place[n], &place[2 * n]};
+  const std::array<const float*, 3> vertices{position.data(), &position[n], &position[2 * n]};
   const detail::MidEdgeCorrection<1> bent(table, n);
   std::vector<float> corrected(field.size(), 0.f);
 

@@ -17,7 +17,8 @@ class HalfSpace {
       : field_(block(), [](const V& p) { return p.y() < -29.999; },
                {.E = 1, .nu = 0.49, .mesh = {.vertices = 150}, .threads = 1}) {}
 
-  [[nodiscard]] std::vector<V> beyond_linear(const std::vector<V>& points, const V& d, double way) const {
+  [[nodiscard]] std::vector<V> beyond_linear(const std::vector<V>& points, const V& d,
+                                             double displacement) const {
     const ResponseDisplay display(field_, points);
     std::vector<V> out(points.size(), V::Zero());
     for (const bool second : {true, false}) {
@@ -28,7 +29,7 @@ class HalfSpace {
       std::vector<double> u(3 * points.size());
       tick.displace(display, u.data(), 3);
       for (std::size_t i = 0; i < points.size(); ++i)
-        out[i] += (second ? 1 : -1) / way * V(u[3 * i], u[3 * i + 1], u[3 * i + 2]);
+        out[i] += (second ? 1 : -1) / displacement * V(u[3 * i], u[3 * i + 1], u[3 * i + 2]);
     }
     return out;
   }
@@ -64,7 +65,7 @@ TEST_CASE("around a disc on a half-space, to 1.2 radii deep: finite elements") {
       error = (std::max)(error, std::hypot(u[i].x() - exact[0], -u[i].y() - exact[1]));
       size = (std::max)(size, std::hypot(exact[0], exact[1]));
     }
-    MESSAGE("pressed ", depth, " radii: largest error ", error, " of the way, of ", size);
+    MESSAGE("pressed ", depth, " radii: largest error ", error, " of the displacement, of ", size);
     CHECK(error < 0.02);
   }
   for (std::size_t k = 0; k < 2; ++k) {
@@ -74,7 +75,7 @@ TEST_CASE("around a disc on a half-space, to 1.2 radii deep: finite elements") {
     double error = 0;
     for (std::size_t i = 0; i < r.size(); ++i)
       error = (std::max)(error, std::abs(0.5 * (r[i].x() + l[i].x()) - test::half_space_truth[i].askew[k]));
-    MESSAGE("askew ", depth, " radii: largest error ", error, " of the way");
+    MESSAGE("askew ", depth, " radii: largest error ", error, " of the displacement");
     CHECK(error < 0.02);
   }
 }

@@ -15,9 +15,9 @@ ResponseField ellipsoid(double nu) {
 }
 // Forty degrees from the top.
 SphereContact<double> on_flank(double depth) {
-  const V place(0.06 * std::sin(0.7), 0.04 * std::cos(0.7), 0),
-      weight = axes.cwiseProduct(axes).cwiseInverse(), normal = place.cwiseProduct(weight).normalized();
-  return {.position = place, .normal = normal, .radius = 0.012, .curvature = 45, .depth = depth};
+  const V position(0.06 * std::sin(0.7), 0.04 * std::cos(0.7), 0),
+      weight = axes.cwiseProduct(axes).cwiseInverse(), normal = position.cwiseProduct(weight).normalized();
+  return {.position = position, .normal = normal, .radius = 0.012, .curvature = 45, .depth = depth};
 }
 Eigen::VectorXd shape(ResponseTick<1>& tick, const ResponseDisplay& display, double depth) {
   Eigen::VectorXd u(3 * Eigen::Index(display.size()));

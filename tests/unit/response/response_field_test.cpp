@@ -136,7 +136,8 @@ TEST_CASE("near field of second order: the patch moves as one, no jump at its ed
 }
 
 TEST_CASE(
-    "places of loads: on the body, and no triangle between them folds over, where parts of the surface have "
+    "positions of loads: on the body, and no triangle between them folds over, where parts of the surface "
+    "have "
     "reflex corners") {
   const test::ResponseBody bowl = test::response_bodies()[6];
   std::vector<std::uint8_t> fixed;

@@ -53,9 +53,9 @@ TEST_CASE(
   for (const double radius : {0.004, 0.016}) {  // narrow, and wide for its mesh
     const Contact first = pressed(0.02, radius, d);
     const Answer alone = answer(&first, 1);
-    for (const V& way : {V(0, -1e-3, 0), V(3e-4, -8e-4, 0), V(5e-4, 5e-4, 0)}) {
+    for (const V& displacement : {V(0, -1e-3, 0), V(3e-4, -8e-4, 0), V(5e-4, 5e-4, 0)}) {
       const auto with = [&](double part) {
-        const Contact both[2] = {first, pressed(0.036 + radius, 0.004, V(part * way))};
+        const Contact both[2] = {first, pressed(0.036 + radius, 0.004, V(part * displacement))};
         return answer(both, 2);
       };
       // Of d, and of the force for it. Sums in float: 4e-7 met. A contact that kept its position at once

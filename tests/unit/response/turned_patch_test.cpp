@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 
-// A patch that the tool tilts and twists: its torque, where it goes, what it does to others.
+// A patch that the tool turns, across its normal and about it: its torque, where it goes, what it does to
+// others.
 
 #include <palpate/elasticity/point_load.hpp>
 #include <palpate/response/response_contact.hpp>
@@ -59,9 +60,9 @@ TEST_CASE("five radii from a small patch that tilts freely: the half-space's fie
   // couple moves nothing along the surface; held in place a patch that tilts pulls sideways, too.
   const double a = 0.001, angle = 0.01, nu = 0.2, apart = 0.00025;
   const ResponseField field = test::block_field(V(0.08, 0.05, 0.06), 1e6, nu, 150);
-  const double way = 1e-6, held = solved(field, on_top(0, a, V::Zero(), V(0, 0, angle)), false).force.x(),
-               moved = solved(field, on_top(0, a, V(way, 0, 0), V::Zero()), false).force.x();
-  const Contact contact = on_top(0, a, V(-held / moved * way, 0, 0), V(0, 0, angle));
+  const double shift = 1e-6, held = solved(field, on_top(0, a, V::Zero(), V(0, 0, angle)), false).force.x(),
+               moved = solved(field, on_top(0, a, V(shift, 0, 0), V::Zero()), false).force.x();
+  const Contact contact = on_top(0, a, V(-held / moved * shift, 0, 0), V(0, 0, angle));
   ResponseTick<1> tick(field, {.second_order = false});
   V force, torque;
   tick.solve(&contact, 1, &force, &torque);
@@ -135,26 +136,28 @@ TEST_CASE("twisted on a bent surface: finite elements") {
   // Case twist of bench/truth/make_reference.cpp at 0.05 rad: an ellipsoid of 50, 35, 30 mm, 40 degrees of
   // its parameter from the top. A plane has 16 % more.
   const double angle = 40 * std::numbers::pi / 180;
-  const V axes(0.05, 0.035, 0.03), place(axes.x() * std::sin(angle), axes.y() * std::cos(angle), 0),
-      normal = place.cwiseQuotient(axes.cwiseProduct(axes)).normalized();
+  const V axes(0.05, 0.035, 0.03), position(axes.x() * std::sin(angle), axes.y() * std::cos(angle), 0),
+      normal = position.cwiseQuotient(axes.cwiseProduct(axes)).normalized();
   const ResponseField field(test::ellipsoid_mesh(axes, 14), [](const V& p) { return p.y() <= -0.028; },
                             {.E = 1e6, .nu = 0.49, .mesh = {.vertices = 260}, .threads = 1});
-  const Contact contact{.position = place, .normal = normal, .radius = 0.006, .rotation = -0.05 * normal};
+  const Contact contact{.position = position, .normal = normal, .radius = 0.006, .rotation = -0.05 * normal};
   const V torque = solved(field, contact, true).torque, truth(-0.00839990622, -0.0143690087, 0);
   MESSAGE("torque ", torque.norm(), " of ", truth.norm());
   CHECK((torque - truth).norm() < 0.03 * truth.norm());  // the goal for forces; 1.2 % met
 }
 
-TEST_CASE("what tilts and twists do, and what forces do to them, is the same: reciprocity") {
+TEST_CASE(
+    "the work of rotations' forces on displacements is that of displacements' torques on rotations: "
+    "reciprocity") {
   for (const double radius : {0.004, 0.02}) {
     double largest = 0;  // difference of works, over those of the diagonal
     for (int axis = 0; axis < 3; ++axis)
-      for (int way = 0; way < 3; ++way) {
+      for (int along = 0; along < 3; ++along) {
         const double d = 1e-4, angle = d / radius;
         const Loads turned = solved(block(), on_top(0.03, radius, V::Zero(), angle * V::Unit(axis)), false),
-                    moved = solved(block(), on_top(0.03, radius, d * V::Unit(way), V::Zero()), false);
+                    moved = solved(block(), on_top(0.03, radius, d * V::Unit(along), V::Zero()), false);
         const double all = std::sqrt(moved.force.norm() * d * turned.torque.norm() * angle);
-        largest = (std::max)(largest, std::abs(turned.force[way] * d - moved.torque[axis] * angle) / all);
+        largest = (std::max)(largest, std::abs(turned.force[along] * d - moved.torque[axis] * angle) / all);
       }
     MESSAGE("radius ", radius, ": ", largest);
     // A patch that is wide for its mesh is bonded by five loads, which move it, too, but are left out where w
@@ -174,12 +177,12 @@ TEST_CASE("two contacts: what turning one does to the other, and moving the othe
     tick.solve(both, 2, F, T);
     return Loads{F[1], T[0]};
   };
-  const double angle = 0.02, way = 1e-4;
+  const double angle = 0.02, shift = 1e-4;
   const Loads rest = answer(V::Zero(), V::Zero());
   Mat3<double> by_turn, by_move;  // works
   for (int i = 0; i < 3; ++i) {
-    by_turn.row(i) = way * (answer(angle * V::Unit(i), V::Zero()).force - rest.force);
-    by_move.col(i) = angle * (answer(V::Zero(), way * V::Unit(i)).torque - rest.torque);
+    by_turn.row(i) = shift * (answer(angle * V::Unit(i), V::Zero()).force - rest.force);
+    by_move.col(i) = angle * (answer(V::Zero(), shift * V::Unit(i)).torque - rest.torque);
   }
   MESSAGE("largest work ", by_turn.cwiseAbs().maxCoeff(), ", differing by ",
           (by_turn - by_move).cwiseAbs().maxCoeff());

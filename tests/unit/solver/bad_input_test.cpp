@@ -168,7 +168,8 @@ void check_rows(const char* what, const Make& make) {
         CHECK(c.friction.norm() <= 0.5 * c.normal_force * (1 + 1e-12));  // mu_static
       }
       if constexpr (Touch::has_memory) {
-        // A body that has yielded or relaxed pushes less; 1 % for the weight of the region, the greatest so far.
+        // A body that has yielded or relaxed pushes less; 1 % for the weight of the region, the greatest so
+        // far.
         CHECK(here.norm() <= 1.01 * there.norm());
       } else if constexpr (Touch::is_rate_dependent) {
         CHECK(here.norm() >= 0.9999 * there.norm());  // the jump's speed on top

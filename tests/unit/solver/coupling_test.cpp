@@ -31,7 +31,7 @@ template <class Force, class Coupling, class Friction = Frictionless<double>>
 using Pins = ContactSolver<Box<double>, Force, Friction, Regions<4, AreaSharing>, NoDeformation<double>,
                            AtContact, Coupling>;
 
-/// Pins along x at these places [m], x then height of the tip.
+/// Pins along x at these positions [m], x then height of the tip.
 ToolPoints<double> pins(const std::vector<std::pair<double, double>>& tips) {
   std::vector<V> points;
   for (const auto& [x, height] : tips)
@@ -230,8 +230,8 @@ ToolPoints<double> compass() {
 
 template <class Rule>
 Coupled<Rule> coupled() {
-  std::vector<V> places;
-  for (const auto& p : extremal_points(egg)) places.push_back(p.position);
+  std::vector<V> positions;
+  for (const auto& p : extremal_points(egg)) positions.push_back(p.position);
   return Coupled<Rule>(
       {.object = egg,
        .tool = compass(),
@@ -239,7 +239,7 @@ Coupled<Rule> coupled() {
        .friction = CoulombFriction<double>({.mu_static = 0.5, .mu_dynamic = 0.3}),
        .contacts = {.distance = 1e-3},
        .coupling = RegionSkeletons<Beams, Rule>(
-           Beams(places, EulerBernoulli<double>(IsotropicElasticity<double>({.E = 1e5, .nu = 0.5})),
+           Beams(positions, EulerBernoulli<double>(IsotropicElasticity<double>({.E = 1e5, .nu = 0.5})),
                  VolumePreserving<double>({.volume = egg.volume()})))});
 }
 Independent independent() {

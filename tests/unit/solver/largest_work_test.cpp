@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A budget of time: what a tick costs at most, and a tool that keeps it. Times themselves are in bench/growth.
+// A budget of time: what a tick costs at most, and a tool that keeps it. Times themselves are in
+// bench/growth.
 #include <palpate/geometry/sphere.hpp>
 #include <palpate/law/force/linear.hpp>
 #include <palpate/solver/contact_solver.hpp>

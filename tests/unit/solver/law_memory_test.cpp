@@ -225,7 +225,8 @@ TEST_CASE("closed paths in 3 degrees of freedom within a dent: no work is left, 
 }
 
 TEST_CASE("regions with dents that merge and split: the force goes on, and rocking gives nothing back") {
-  // Two feet and a bridge 0.2 mm above their soles: two regions when pressed in less than that, one when more.
+  // Two feet and a bridge 0.2 mm above their soles: two regions when pressed in less than that, one when
+  // more.
   std::vector<V> points;
   for (int i = -10; i <= 10; ++i) points.emplace_back(5e-4 * i, std::abs(i) > 4 ? 0 : 2e-4, 0);
   const ToolPoints<double> feet(points, std::vector<double>(points.size(), 2.5e-7), {.contact_area = 2e-6});

@@ -212,7 +212,8 @@ TEST_CASE("a tool pressed deeper than it is tall is not let go: the force rises 
         before = felt.force.y();
         if (i > 20) aside = (std::max)(aside, std::hypot(felt.force.x(), felt.force.z()) / before);
       }
-      // Nothing pushes a tool along a flat body: to the quadrature of the part that is inside, of second order.
+      // Nothing pushes a tool along a flat body: to the quadrature of the part that is inside, of second
+      // order.
       CHECK(aside < 0.003);
     }
   }

@@ -106,8 +106,8 @@ TEST_CASE("a rate at each tick of a motion that turns: within the resolution ove
     const double F = solver.tick(at_depth(depth), dt).wrench.force.y() / (1000 * depth);
     if (tick > 20) worst = (std::max)(worst, std::abs(F - (1 + 15 * 2e-3 * w * std::cos(w * t))));
   }
-  // A line within d = 10 um of an arc of curvature A w^2 = 1.26 m/s^2 is T = sqrt(8 d/(A w^2)) = 8 ms long and
-  // lags by half of that: 5 mm/s of 50. One more pose of 1 ms may be in.
+  // A line within d = 10 um of an arc of curvature A w^2 = 1.26 m/s^2 is T = sqrt(8 d/(A w^2)) = 8 ms long
+  // and lags by half of that: 5 mm/s of 50. One more pose of 1 ms may be in.
   CHECK(worst <= 15 * 1.26 * 0.0055);
 }
 

@@ -113,7 +113,8 @@ TEST_CASE("twisted on, the region slips at 2/3 a mu F, whatever its mesh; slidin
 }
 
 TEST_CASE("sliding and turning at once: on the limit surface, in the direction of its normal") {
-  // The surface's normal: velocity v and rate w with f ~ v, tau/lever ~ lever w; here w lever = v: 45 degrees.
+  // The surface's normal: velocity v and rate w with f ~ v, tau/lever ~ lever w; here w lever = v: 45
+  // degrees.
   auto solver = solver_of();
   const double lever = 2.0 / 3 * a;
   Wrench<double> felt{};
@@ -148,12 +149,12 @@ TEST_CASE("over random closed paths, sliding, twisting and pressed more and less
     auto solver = solver_of(5);
     double c[6], p[6];
     for (int k = 0; k < 6; ++k) c[k] = part(random), p[k] = phase(random);
-    const auto place = [&](double t) {
+    const auto position = [&](double t) {
       return at(1e-3 * (c[0] * std::sin(t + p[0]) + c[1] * std::sin(2 * t + p[1])),
                 2e-3 + 1e-3 * c[2] * std::sin(2 * t + p[2]),
                 0.4 * (c[3] * std::sin(t + p[3]) + c[4] * std::sin(3 * t + p[4])));
     };
-    const Work work = work_along(solver, place);
+    const Work work = work_along(solver, position);
     most = (std::max)(most, work.net / work.gross);
   }
   CHECK(most <= 1e-4);  // the trapezoid errs by the square of the step; with a margin of 10

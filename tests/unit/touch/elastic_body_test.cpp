@@ -35,10 +35,10 @@ TEST_CASE("elastic body: a tube with too few vertices around it is refused, it h
   const MeshData<double> tube = test::torus_mesh(0.05, 0.006, 60, 14);
   const FixedPredicate left = [](const V& x) { return x.x() < -0.04; };
   const ElasticBody fine(tube, {.E = 1e5, .fixed = left, .vertices = 300});
-  CHECK(fine.field()->unsound_places().empty());
+  CHECK(fine.field()->unsound_positions().empty());
   const std::string text = error(tube, {.E = 1e5, .fixed = left, .vertices = 60});
   int unsound = 0, all = 0;
-  CHECK(std::sscanf(text.c_str(), "ElasticBody: the response is no elastic body's at %d of %d places",
+  CHECK(std::sscanf(text.c_str(), "ElasticBody: the response is no elastic body's at %d of %d positions",
                     &unsound, &all) == 2);
   CHECK(unsound > all / 10);  // measured: 29 of 102, with fused products 24 of 105
   CHECK(text.find("ask for more vertices") != std::string::npos);

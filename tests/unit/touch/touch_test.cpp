@@ -25,9 +25,9 @@ namespace {
 using V = Vec3<double>;
 using Coulomb = CoulombFriction<double>;
 
-Pose<double> at(const V& place) {
+Pose<double> at(const V& position) {
   Pose<double> pose;
-  pose.translation = place;
+  pose.translation = position;
   return pose;
 }
 MeshData<double> standing_box(const V& size, int n) {
@@ -165,8 +165,8 @@ TEST_CASE("touch: ticks and draws take no heap; what is drawn is the newest tick
 TEST_CASE(
     "touch: bad poses give no force and no shape; a moving object gives the same in world coordinates") {
   BallTouch& touch = ball_on_ellipsoid();
-  const V place(0.01, 0.05, 0.005);
-  const auto felt = touch.tick(at(place), 1e-3);
+  const V position(0.01, 0.05, 0.005);
+  const auto felt = touch.tick(at(position), 1e-3);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK(has(touch.tick(at(V(nan, 0, 0)), 1e-3).status, Status::invalid_pose));
   CHECK(touch.tick(at(V(nan, 0, 0)), 1e-3).wrench.force == V(V::Zero()));
@@ -175,7 +175,7 @@ TEST_CASE(
   Pose<double> object;
   object.rotation = Eigen::AngleAxis<double>(0.7, V(1, 2, 3).normalized()).toRotationMatrix();
   object.translation = V(0.3, -0.1, 0.2);
-  const Pose<double> tool{object.rotation, object * place};
+  const Pose<double> tool{object.rotation, object * position};
   const WorldResult<double> world = touch.tick(tool, object, 1e-3);
   CHECK((world.tool.force - object.rotation * felt.wrench.force).norm() < 1e-9);  // rounding of 100 N
   CHECK((world.tool.force + world.object.force).norm() == 0);
@@ -194,8 +194,8 @@ TEST_CASE("touch, a cylinder's end pressed flat: the field's disc") {
     touch.reset();
     const auto felt = touch.tick(at(V(0.005, 0.06 - depth, 0.005)), 1e-3);
     MESSAGE("depth ", depth, ": felt ", felt.wrench.force.y(), " N, field ", -asked.y());
-    // Of first order they agree within 0.3 %. Each has a second order of its own, the points 0.5, 1.2 and 3.5 %,
-    // the disc 1.5 % at 4 mm, most of its radius.
+    // Of first order they agree within 0.3 %. Each has a second order of its own, the points 0.5, 1.2 and 3.5
+    // %, the disc 1.5 % at 4 mm, most of its radius.
     CHECK_RELATIVE(felt.wrench.force.y(), -asked.y(), depth < 0.003 ? 0.015 : 0.03);
     REQUIRE(felt.contacts.size() == 1);
     V sum = V::Zero();
@@ -289,9 +289,9 @@ TEST_CASE("touch, two tools on one body: it gives way to both, and is drawn on b
   }
 }
 
-// The case `grasp` of bench/truth/data/contact: what each ball pushes the block with, by finite elements, 1 %.
-// A ball alone bends the block away, with 9.6 N where they are 2.5 mm deep; the other one pushes it back, by
-// more than that.
+// The case `grasp` of bench/truth/data/contact: what each ball pushes the block with, by finite elements, 1
+// %. A ball alone bends the block away, with 9.6 N where they are 2.5 mm deep; the other one pushes it back,
+// by more than that.
 TEST_CASE("touch, two balls hold a block and lift it: as finite elements have it") {
   const ElasticBody body(standing_box(V(0.04, 0.05, 0.04), 12),
                          {.E = 1e6, .nu = 0.49, .fixed = below(1e-6), .vertices = 200});

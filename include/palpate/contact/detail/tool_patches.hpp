@@ -164,7 +164,8 @@ class ToolPatches {
             share * ratio * (part[seeds[j]] == part[seeds[k]] ? coupled_within_a_part(r / a) : 1);
       }
     }
-    // R of a ratio that is positive definite, and of parts that are not cut, is so already.
+    // R of a ratio that is positive definite, and of parts that are not cut, is so already. Any other: by a
+    // factor that is the largest that makes it so, or up to a tenth less (chosen).
     while (!is_definite()) {
       for (std::size_t j = 0; j < size_; ++j)
         for (std::size_t k = 0; k < j; ++k) matrix_[j * (j + 1) / 2 + k] *= 0.9;

@@ -17,8 +17,8 @@ template <Real S>
 [[nodiscard]] ToolPoints<S> coarse(const ToolPoints<S>& tool, std::size_t most) {
   if (most == 0) fail("CoarseTool", "needs at least one point");
   if (tool.size() <= most) return tool;
-  constexpr S step = S(1.25L);
-  constexpr int halvings = 6;  // of a step: to 0.4 % of the spacing, about 1 % of the points
+  constexpr S step = S(1.25L);  // of the spacing, until it fits (chosen)
+  constexpr int halvings = 6;   // of a step: to 0.4 % of the spacing, about 1 % of the points
   std::vector<std::uint32_t> order(tool.size());
   std::iota(order.begin(), order.end(), 0u);
   const auto fits = [&](S spacing) {

@@ -15,10 +15,10 @@ namespace palpate::detail {
 
 /// Scale of the wrench, 1 until the tool vibrates: positions that are read half an encoder step wrong hide
 /// work, which can feed a limit cycle where the stiffness is above a part of 2 f_c/Delta [abbott2005], f_c
-/// the arm's friction and Delta the encoder step. A swing is the way between two turning points along the
-/// wrench held, torque counted at the radius of gyration. One counts if it is above the dither of the
+/// the arm's friction and Delta the encoder step. A swing is the travel between two turning points along the
+/// wrench that acted, torque counted at the radius of gyration. One counts if it is above the dither of the
 /// encoders, takes less than 80 ms, ends near where the one before it began, and if the wrench changed by
-/// more than 0.4 f_c/Delta times the way. From the fourth in a row on, each that is not smaller than the
+/// more than 0.4 f_c/Delta times the travel. From the fourth in a row on, each that is not smaller than the
 /// one before last takes a fifth of the scale, in 4 ms. A contact begins at 1 again after 0.2 s in free
 /// air.
 ///
@@ -32,24 +32,24 @@ class VibrationLimit {
         friction_(stiff * device.friction),
         resolution_(device.resolution) {}
 
-  /// `held`: the wrench that acted since the last call; `work` [J]: what it did; `at` [m]: the stylus now.
-  void observe(const Wrench<S>& held, S work, const Vec3<S>& at, bool touches, S dt) noexcept {
+  /// `acted`: the wrench that acted since the last call; `work` [J]: what it did; `at` [m]: the stylus now.
+  void observe(const Wrench<S>& acted, S work, const Vec3<S>& at, bool touches, S dt) noexcept {
     time_ += dt;
     scale_ = (std::max)(target_, scale_ - dt / ramp);
     free_ = touches ? S(0) : free_ + dt;
     if (free_ > forgotten_after) reset();
-    const S size2 = squared(held);
-    if (touches && size2 > S(0)) way_ += side_ * work / std::sqrt(size2);
-    if (way_ > farthest_.way) {
-      farthest_ = {way_, time_, held};
-    } else if (farthest_.way - way_ > smallest_) {
+    const S size2 = squared(acted);
+    if (touches && size2 > S(0)) travel_ += side_ * work / std::sqrt(size2);
+    if (travel_ > farthest_.travel) {
+      farthest_ = {travel_, time_, acted};
+    } else if (farthest_.travel - travel_ > smallest_) {
       turn(at);
     }
   }
   [[nodiscard]] S scale() const noexcept { return scale_; }
 
   void reset() noexcept {
-    way_ = time_ = free_ = S(0);
+    travel_ = time_ = free_ = S(0);
     farthest_ = {};
     swings_ = {};
     in_a_row_ = 0;
@@ -70,11 +70,11 @@ class VibrationLimit {
   static constexpr int transient = 3;           // swings
 
   struct Farthest {
-    S way = S(0), time = S(0);
+    S travel = S(0), time = S(0);
     Wrench<S> wrench{};
   };
   struct Swing {
-    S way = S(0);
+    S travel = S(0);
     Vec3<S> at = Vec3<S>::Zero();
     Wrench<S> wrench{};
   };
@@ -85,26 +85,26 @@ class VibrationLimit {
   /// The tool has come back from the farthest point; from there the next swing is counted.
   void turn(const Vec3<S>& at) noexcept {
     const Swing last = swings_[0], before = swings_[1];
-    const S way = farthest_.way,
+    const S travel = farthest_.travel,
             change2 = squared(
                 {farthest_.wrench.force - last.wrench.force, farthest_.wrench.torque - last.wrench.torque}),
-            least = friction_ * way;
-    const bool counts = farthest_.time < slowest && (at - before.at).norm() < stays * way &&
+            least = friction_ * travel;
+    const bool counts = farthest_.time < slowest && (at - before.at).norm() < stays * travel &&
                         change2 * resolution_ * resolution_ > least * least;
     in_a_row_ = counts ? in_a_row_ + 1 : 0;
-    if (in_a_row_ > transient && way > lasting * before.way) target_ *= softer;
-    swings_ = {Swing{way, at, farthest_.wrench}, last};
-    way_ = farthest_.way - way_;
+    if (in_a_row_ > transient && travel > lasting * before.travel) target_ *= softer;
+    swings_ = {Swing{travel, at, farthest_.wrench}, last};
+    travel_ = farthest_.travel - travel_;
     time_ -= farthest_.time;
-    farthest_ = {way_, time_, farthest_.wrench};
+    farthest_ = {travel_, time_, farthest_.wrench};
     side_ = -side_;
   }
 
   S smallest_, per_torque2_, friction_, resolution_;
   std::array<Swing, 2> swings_{};  // newest first
   Farthest farthest_;
-  S way_ = S(0), time_ = S(0);  // since the last turning point [m], [s]
-  S free_ = S(0);               // in free air [s]
+  S travel_ = S(0), time_ = S(0);  // since the last turning point [m], [s]
+  S free_ = S(0);                  // in free air [s]
   S side_ = S(1), scale_ = S(1), target_ = S(1);
   int in_a_row_ = 0;
 };

@@ -165,21 +165,21 @@ class BvhBuild {
     }
     std::array<S, bins> above{};  // cost of the bins from k on
     Box grown;
-    std::size_t held = 0;
+    std::size_t items = 0;
     for (std::size_t k = bins; k-- > 1;) {
       grown.add(box[k].low, box[k].high);
-      held += count[k];
-      above[k] = held > 0 ? grown.half_area() * static_cast<S>(held) : S(0);
+      items += count[k];
+      above[k] = items > 0 ? grown.half_area() * static_cast<S>(items) : S(0);
     }
     grown = Box{};
-    held = 0;
+    items = 0;
     int best = 0;
     S least = (std::numeric_limits<S>::max)();
     for (std::size_t k = 0; k + 1 < bins; ++k) {
       grown.add(box[k].low, box[k].high);
-      held += count[k];
-      const S cost = (held > 0 ? grown.half_area() * static_cast<S>(held) : S(0)) + above[k + 1];
-      if (cost < least && held > 0) {
+      items += count[k];
+      const S cost = (items > 0 ? grown.half_area() * static_cast<S>(items) : S(0)) + above[k + 1];
+      if (cost < least && items > 0) {
         least = cost;
         best = static_cast<int>(k);
       }

@@ -47,7 +47,7 @@ class VolumePreserving {
   [[nodiscard]] constexpr const Params& params() const noexcept { return p_; }
 
  private:
-  static constexpr S max_length = S(1e9);
+  static constexpr S max_length = S(1e9);  // [m]: far above a body's 1e3 m
 
   [[nodiscard]] S radius(S total_length) const noexcept {
     const S sum = (std::min)((std::max)(min_length_, total_length), (std::max)(min_length_, max_length));

@@ -46,10 +46,10 @@ class BodyShift {
   void measure(const PointSystem& system, const float* q, const VectorList& w, const Vec3<S>& origin,
                float moved) noexcept {
     V loads{}, sizes{}, areas{};
-    SimdVec3<V> sum{}, places{};
+    SimdVec3<V> sum{}, positions{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const V qi(q + i);
-      loads += qi, places += qi * system.positions().load(i);
+      loads += qi, positions += qi * system.positions().load(i);
       areas += select(qi > V(0.f), V(system.areas() + i), V(0.f));
       if constexpr (has_friction) {
         sum += qi * w.load(i);
@@ -81,7 +81,7 @@ class BodyShift {
     has_settled_ = length <= settled * target.norm();
     const bool grows = target.squaredNorm() > v_.squaredNorm();
     v_ += grows && length > most ? Vec3<float>(most / length * change) : change;
-    middle_ = origin + (sum_of(places) / load).template cast<S>() + v_.template cast<S>();
+    middle_ = origin + (sum_of(positions) / load).template cast<S>() + v_.template cast<S>();
     area_ = reduce(areas);
   }
   /// After `tries` looks in vain, the tool having come back in a tick: v is less by an eighth of what it was.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file How far friction has carried the surface along with the tool, by place: so far beside them lay what
-/// the tool's points now touch.
+/// @file How far friction has carried the surface along with the tool, by position: so far beside them lay
+/// what the tool's points now touch.
 
 #include <palpate/core/aligned_list.hpp>
 #include <palpate/core/scalar.hpp>
@@ -90,7 +90,7 @@ class CarriedSurface {
     return sum_of(sum) / (std::max)(reduce(near), 0.1f * total_);
   }
 
-  VectorList x_, a_;           // of groups: mean place, sum of q a
+  VectorList x_, a_;           // of groups: mean position, sum of q a
   AlignedList<float> weight_;  // sum of q
   Vec3<S> origin_ = Vec3<S>::Zero();
   std::size_t size_ = 0;

@@ -45,7 +45,7 @@ class Unloaded {
 /// it within the contact. Where the pressure falls as under a ball, p = 1.5 p_mean sqrt(2 s/a) at s inside
 /// the rim of radius a, a cell of width h has the mean pressure sqrt(2 h f/a) p_mean f; on points it is 0.8
 /// of that, for points beyond the rim carry a part (balls on 20 to 150 points of a half-space: area -3 to
-/// +2 % in the mean of places). Overwrites y of the lists.
+/// +2 % in the mean of positions). Overwrites y of the lists.
 [[nodiscard]] inline float contact_area(const PointSystem& system, PressureLists& lists,
                                         const Unloaded& unloaded) noexcept {
   using V = Unloaded::V;

@@ -70,9 +70,9 @@ class FiniteStrain {
   [[nodiscard]] PALPATE_INLINE V limit_per_mu(const PointSystem& system, std::size_t i,
                                               const SimdVec3<V>& outward, const V& q) const noexcept {
     const V area = V(1.f) / clamp(dot(outward, system.directions().load(i)), rim, 1.f),
-            way = sqrt(V(0.5f) * (V(1.f) + area * area)),
+            stretch = sqrt(V(0.5f) * (V(1.f) + area * area)),
             strain = (max)(V(strain_across_) * q / V(system.areas() + i), V(-0.5f));
-    return area * way * (V(1.f) + strain);
+    return area * stretch * (V(1.f) + strain);
   }
   /// k e
   [[nodiscard]] float softening() const noexcept { return softening_; }

@@ -39,14 +39,15 @@ inline constexpr float rounding2 = 4e-12f;
 /// changes.
 struct FrictionLists : LoadLists {
   VectorList anchor, load_step, u_step;
-  AlignedList<float> held;    ///< 1 where the point has an anchor, 0 where it has just come in: no tractions
+  AlignedList<float>
+      anchored;               ///< 1 where the point has an anchor, 0 where it has just come in: no tractions
   AlignedList<float> per_mu;  ///< limit of the tractions over mu q, s
   float step = 0;             ///< the last tick's last; 0: none [1/m]
   float mu = 0;               ///< of the result
   void resize(std::size_t size) {
     LoadLists::resize(size);
     for (auto* list : {&anchor, &load_step, &u_step}) list->resize(size);
-    for (auto* list : {&held, &per_mu}) list->resize(size);
+    for (auto* list : {&anchored, &per_mu}) list->resize(size);
   }
 };
 
@@ -73,17 +74,17 @@ struct LoadModel {
 /// Points of a solve, a register of them, with all displacements z more than they are.
 struct LoadedPoints {
   using V = VectorList::V;
-  SimdVec3<V> m, t, slip;       // direction of pressing; tractions; of the surface over where it is held
-  V q, limit_per_q, held, gap;  // normal load; mu s; FrictionLists::held; m.u - d
+  SimdVec3<V> m, t, slip;           // direction of pressing; tractions; of the surface over its anchor
+  V q, limit_per_q, anchored, gap;  // normal load; mu s; FrictionLists::anchored; m.u - d
 
   PALPATE_INLINE LoadedPoints(const FrictionLists& lists, const VectorList& directions, const float* d,
                               std::size_t i, const SimdVec3<V>& z) noexcept
-      : m(directions.load(i)), limit_per_q(V(lists.mu) * V(&lists.per_mu[i])), held(&lists.held[i]) {
+      : m(directions.load(i)), limit_per_q(V(lists.mu) * V(&lists.per_mu[i])), anchored(&lists.anchored[i]) {
     const SimdVec3<V> P = lists.load.load(i), u = lists.u.load(i);
     q = dot(m, P), t = P - q * m;
     // z last: it may be less than the last digit of u.
     gap = (dot(m, u) - V(d + i)) + dot(m, z);
-    slip = held * (across(m, u - lists.anchor.load(i)) + across(m, z));
+    slip = anchored * (across(m, u - lists.anchor.load(i)) + across(m, z));
   }
 };
 
@@ -152,7 +153,7 @@ class FrictionSteps {
     for (std::size_t i = 0; i < n_; i += V::size()) {
       const SimdVec3<V> m = m_.load(i), P = lists_.load.load(i);
       const V q = dot(m, P), next = (max)(q, V(0.f));
-      const SimdVec3<V> t = V(&lists_.held[i]) * (P - q * m);
+      const SimdVec3<V> t = V(&lists_.anchored[i]) * (P - q * m);
       lists_.load.store(i, next * m + within(V(lists_.mu) * V(&lists_.per_mu[i]) * next, dot(t, t)) * t);
     }
     if (lists_.step == 0) lists_.step = model_.step;
@@ -183,8 +184,8 @@ class FrictionSteps {
   /// The step, to lists.load_step. Returns the sum of normal loads after it.
   float find() noexcept {
     if (has_common_) begin_shift();
-    // Newton's method for the z at which C^-1 z is the sum of steps; on each way to where it is so along it.
-    Vec3<double> from = Vec3<double>::Zero(), way = from;
+    // Newton's method, with a search along each direction, for the z at which C^-1 z is the sum of steps.
+    Vec3<double> from = Vec3<double>::Zero(), direction = from;
     double share = 1, low = 0, high = 0, begin = 0;
     for (int k = 0;; ++k) {
       SlopeSum slopes;
@@ -194,16 +195,16 @@ class FrictionSteps {
       if (miss <= (std::max)(close * z_.norm(), rounding_ / 4)) return total;
       const Vec3<double> z = z_.cast<double>(), left = stiffness_ * z - sum_.cast<double>();
       const Mat3<double> slope = slope_of(slopes);
-      const double off = way.dot(left);
+      const double off = direction.dot(left);
       if (k == 0 || std::abs(off) <= std::abs(begin) / 2 || (off < 0 && !(high > 0))) {
-        from = z, way = -(slope.inverse() * left), begin = way.dot(left);
+        from = z, direction = -(slope.inverse() * left), begin = direction.dot(left);
         share = 1, low = high = 0;
       } else {
         (off > 0 ? high : low) = share;
-        share -= off / way.dot(slope * way);
+        share -= off / direction.dot(slope * direction);
         if (!(share > low && share < high)) share = (low + high) / 2;
       }
-      const Vec3<float> next = (from + share * way).cast<float>();
+      const Vec3<float> next = (from + share * direction).cast<float>();
       if (!is_finite(next)) return total;
       z_ = next;
     }
@@ -252,7 +253,7 @@ class FrictionSteps {
               slips = select(t2 < V(slips_from) * limit * limit, zero,
                              select(dot(p.slip, p.t) < zero, one, zero));
       const StepSlope slope(p.m, inverse_sqrt((max)(t2, V(tiny))) * p.t, loaded * normal,
-                            loaded * p.held * tangential, slips, p.limit_per_q);
+                            loaded * p.anchored * tangential, slips, p.limit_per_q);
       slopes += slope;
       steps -= slope * (p.gap * p.m + p.slip);
     }
@@ -275,7 +276,7 @@ class FrictionSteps {
       total += next, sum += dP;
       if (!has_common_) continue;
       slopes += StepSlope(p.m, inverse_sqrt((max)(t2, V(tiny))) * t, select(next > zero, normal, zero),
-                          select(next > zero, share * p.held * tangential, zero),
+                          select(next > zero, share * p.anchored * tangential, zero),
                           select(share < one, one, zero), p.limit_per_q);
     }
     sum_ = sum_of(sum);

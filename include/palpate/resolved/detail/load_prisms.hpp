@@ -70,6 +70,8 @@ class LoadPrisms {
     }
     const V per_a2 = V(1.f) / (max)(dot(area, area), tiny), wq = per_a2 * dot(cross(to, er), area),
             wr = per_a2 * dot(cross(eq, to), area), wp = V(1.f) - wq - wr;
+    // On the rim to rounding it is in both prisms; Newton has settled if its last step is 1e-3 of an edge
+    // (chosen: the next one would be of the order of 1e-6).
     const auto found =
         (min)((min)(wp, wq), wr) > V(-1e-5f) && slope < V(0.f) && step * step < V(1e-6f) * dot(eq, eq);
     const SimdVec3<V> normal = n + wq * dq + wr * dr;

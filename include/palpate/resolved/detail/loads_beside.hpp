@@ -65,9 +65,9 @@ class LoadsBeside {
                   const Pose<S>& X, bool touches, S per_load, RegularPart& regular) noexcept {
     const auto& all = tool.nodes()[0];
     const Vec3<S> centre = X * all.centre;
-    const float way = static_cast<float>((centre - before * all.centre).norm()) + (next_ - v_).norm(),
+    const float travel = static_cast<float>((centre - before * all.centre).norm()) + (next_ - v_).norm(),
                 left = rest_.norm();
-    rest_ *= left > fading * way ? 1 - fading * way / left : 0.f;
+    rest_ *= left > fading * travel ? 1 - fading * travel / left : 0.f;
     v_ = next_;
     if (loads_.empty()) forget();
     if (!touches) approach(object, body, tool, X, per_load, regular);
@@ -159,8 +159,8 @@ class LoadsBeside {
  private:
   // On the surface: down the tool's tree, of two balls always into the one whose middle is nearer.
   template <ContactSurface Object>
-  [[nodiscard]] static SurfacePoint<S> nearest_place(const Object& object, const ToolPoints<S>& tool,
-                                                     const Pose<S>& X) noexcept {
+  [[nodiscard]] static SurfacePoint<S> nearest_position(const Object& object, const ToolPoints<S>& tool,
+                                                        const Pose<S>& X) noexcept {
     const auto nodes = tool.nodes();
     SurfacePoint<S> at = object.closest(X * nodes[0].centre);
     for (std::size_t n = 0; nodes[n].skip > n + 1;) {
@@ -180,7 +180,7 @@ class LoadsBeside {
     Vec3<float> u = Vec3<float>::Zero();
     const auto& all = tool.nodes()[0];
     if (!loads_.empty() && !object.separated(X * all.centre, 2 * all.radius)) {
-      const SurfacePoint<S> nearest = nearest_place(object, tool, X);
+      const SurfacePoint<S> nearest = nearest_position(object, tool, X);
       if constexpr (RegularPart::active) {
         regular.clear();
         regular.place_point(body, nearest.position.template cast<double>(), triangle_of_nearest_);

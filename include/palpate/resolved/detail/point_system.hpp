@@ -32,7 +32,7 @@ class PointSystem {
   using V = VectorList::V;
   static constexpr float own_cell = 3.92f;
 
-  /// A place that is far from all points, to fill up registers with [m].
+  /// A position that is far from all points, to fill up registers with [m].
   [[nodiscard]] static Vec3<float> apart() noexcept { return Vec3<float>::Constant(1e3f); }
 
   PointSystem(std::size_t capacity, float compressibility, bool has_friction)

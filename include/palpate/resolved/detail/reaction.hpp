@@ -44,7 +44,7 @@ class Reaction {
         const V limit = V(result.mu) * V(&result.per_mu[i]) * qi, limit2 = limit * limit, held2 = dot(t, t);
         const auto sticks = held2 < V(slips_from) * limit2;
         slips = select(sticks, held2 / (max)(limit2, tiny), one);
-        const auto holds = sticks && V(&result.held[i]) > zero;
+        const auto holds = sticks && V(&result.anchored[i]) > zero;
         const SimdVec3<V> a = result.anchor.load(i),
                           kept{select(holds, a.x, u.x), select(holds, a.y, u.y), select(holds, a.z, u.z)};
         anchor_.store(i, across(m, beside.load(i) + kept));

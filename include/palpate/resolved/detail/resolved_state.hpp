@@ -270,7 +270,7 @@ class ResolvedState {
       if constexpr (has_friction) {
         result_.load.store(i, P);
         result_.anchor.store(i, last_.anchor.load(i) - beside_.load(i));
-        V(&last_.loaded[i]).copy_to(&result_.held[i]);
+        V(&last_.loaded[i]).copy_to(&result_.anchored[i]);
         strain_.limit_per_mu(system_, i, outward_.load(i), q).copy_to(&result_.per_mu[i]);
       }
     }

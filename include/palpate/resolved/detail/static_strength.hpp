@@ -21,15 +21,16 @@ class StaticStrength {
   /// mu for the normal force of the whole contact [N], > 0.
   template <class Friction, Real S>
   [[nodiscard]] float coefficient(const Friction& friction, S normal) noexcept {
-    const S held = friction.static_limit(normal), sliding = friction.sliding_limit(normal);
-    drop_ = held > sliding ? static_cast<float>(1 - sliding / held) : 0.f;
-    return static_cast<float>(std::lerp(sliding, held, static_cast<S>(left_)) / normal);
+    const S highest = friction.static_limit(normal), sliding = friction.sliding_limit(normal);
+    drop_ = highest > sliding ? static_cast<float>(1 - sliding / highest) : 0.f;
+    return static_cast<float>(std::lerp(sliding, highest, static_cast<S>(left_)) / normal);
   }
   /// After a tick with the sum `total` of normal loads, of which `sticking` at points that stick; points that
   /// have just come in do not hold a contact. Returns whether the whole contact slides.
   bool remember(float total, float sticking, const PointSystem& system, const PressureLists& pressure,
                 const FrictionLists& friction) noexcept {
-    if (!(total > 0) || sticking >= 0.01f * total) {
+    constexpr float sticks = 0.01f;  // of the load (chosen)
+    if (!(total > 0) || sticking >= sticks * total) {
       left_ = (std::max)(left_, total > 0 ? sticking / total : 1.f);
       return false;
     }
@@ -38,7 +39,7 @@ class StaticStrength {
       const SimdVec3<V> m = system.directions().load(i);
       const V q(&pressure.q[i]);
       const SimdVec3<V> u = across(m, friction.u.load(i));
-      slip += (q * V(&friction.held[i])) * (across(m, friction.anchor.load(i)) - u);
+      slip += (q * V(&friction.anchored[i])) * (across(m, friction.anchor.load(i)) - u);
       stretch += q * u;
     }
     const float spring = 2 * drop_ * sum_of(stretch).norm(), whole = spring + sum_of(slip).norm();

@@ -77,7 +77,7 @@ class ToolSurface {
       };
       const SimdVec3<V> gradient{numbers(in.gradient_x, S(0)), numbers(in.gradient_y, S(0)),
                                  numbers(in.gradient_z, S(0))},
-          place{numbers(x.x, origin.x()), numbers(x.y, origin.y()), numbers(x.z, origin.z())};
+          position{numbers(x.x, origin.x()), numbers(x.y, origin.y()), numbers(x.z, origin.z())};
       const V length2 = dot(gradient, gradient);
       const auto has_normal = length2 > tiny && length2 < most;
       const V per_length = -inverse_sqrt((max)(length2, tiny));
@@ -96,9 +96,9 @@ class ToolSurface {
       }
       deepest = (max)(deepest, depth);
       const V weight = depth * V(&area_[begin + k]);
-      volume += weight, volume_x += weight * place, volume_m += weight * m;
+      volume += weight, volume_x += weight * position, volume_m += weight * m;
       depth.copy_to(&leaf.depth[k]);
-      store(place, leaf.x), store(m, leaf.m), store(outward, leaf.outward);
+      store(position, leaf.x), store(m, leaf.m), store(outward, leaf.outward);
     }
     leaf.deepest = reduce_max(deepest), leaf.volume = reduce(volume);
     leaf.volume_x = sum_of(volume_x), leaf.volume_m = sum_of(volume_m);

@@ -110,7 +110,7 @@ class CentroidalCells {
   void find_neighbours(double cell2) {
     std::vector<Vec3<double>> middles;
     for (const Cell& c : cells_) middles.push_back(c.x);
-    PointGrid<double> grid(middles, 2.2 * std::sqrt(cell2));
+    PointGrid<double> grid(middles, 2.2 * std::sqrt(cell2));  // widths of a cell (chosen): the second ring
     for (const Vec3<double>& x : middles) grid.insert(x);
     for (std::size_t k = 0; k < cells_.size(); ++k) {
       cells_[k].near.assign(1, static_cast<std::uint32_t>(k));
@@ -154,7 +154,8 @@ class CentroidalCells {
       cells_[k].x = to;
       cells_[k].n = s.n;
     }
-    return moved2 > 1e-8 * area * area / static_cast<double>(cells_.size());
+    return moved2 >
+           1e-8 * area * area / static_cast<double>(cells_.size());  // 1e-4 of a cell's width (chosen)
   }
 
   std::vector<Cell> cells_;
@@ -179,6 +180,7 @@ class ToolParts {
   /// Pressure is singular there, and with the middle at 1/2 a punch of 5 x 5 cells is 5 % too soft. With 0.3
   /// squares and strips from 3 x 3 cells on are within 1 %, 5 x 5 within 0.3 %.
   static constexpr double beyond_edge = 0.2;
+  static constexpr double most_cuts = 1000;  // of an edge: bounds the samples of one far too large
 
   void add_triangle(std::size_t t) {
     const auto& v = mesh_.triangles()[t];
@@ -190,7 +192,7 @@ class ToolParts {
       longest = (std::max)(longest, (p[k] - mesh_.vertices()[v[(k + 1) % 3]]).norm());
     }
     const double area = (p[1] - p[0]).cross(p[2] - p[0]).norm() / 2;
-    const int cuts = static_cast<int>((std::min)(std::ceil(longest / fine_), 1000.0));
+    const int cuts = static_cast<int>((std::min)(std::ceil(longest / fine_), most_cuts));
     const auto add = [&](double a, double b) {
       const double c = 1 - a - b;
       const Vec3<double> flat = c * p[0] + a * p[1] + b * p[2];
@@ -214,7 +216,7 @@ class ToolParts {
     const Vec3<double> out = along.cross(n).normalized();
     if (n.dot(other) > least_ || !(other.dot(out) > 0))
       return;  // smooth, or reflex: never an edge of contact
-    const int cuts = static_cast<int>((std::min)(std::ceil(along.norm() / fine_), 1000.0));
+    const int cuts = static_cast<int>((std::min)(std::ceil(along.norm() / fine_), most_cuts));
     for (int i = 0; i < cuts; ++i)
       parts_[normals_.patch[t]].samples.push_back(
           {p + along * ((i + 0.5) / cuts) + out * (width / 2), n, along.norm() * width / cuts, false});

@@ -32,7 +32,8 @@ PALPATE_COMPILED_INLINE void MidEdgeTable::find_middles(const ElementMesh& mesh)
   for (std::size_t t = 0; t < of_triangle_.size(); ++t)
     for (std::size_t c = 0; c < 3; ++c)
       ends_[of_triangle_[t][c]] = {mesh.triangles[t][c], mesh.triangles[t][(c + 1) % 3]};
-  for (auto& list : middle_) list.assign(detail::padded<detail::Simd4>(edge_rows_.size()), 1e9f);
+  for (auto& list : middle_)
+    list.assign(detail::padded<detail::Simd4>(edge_rows_.size()), 1e9f);  // fills up: far from all
   for (std::size_t e = 0; e < edge_rows_.size(); ++e) {
     if (edge_rows_[e].empty()) continue;
     Vec3<double> x = 0.5 * (mesh.vertices[ends_[e][0]] + mesh.vertices[ends_[e][1]]);

@@ -77,9 +77,9 @@ PALPATE_COMPILED_INLINE double ResponseField::unresolved_area() const {
   return palpate::unresolved_area(mesh_);
 }
 
-PALPATE_COMPILED_INLINE std::vector<Vec3<double>> ResponseField::unsound_places() const {
+PALPATE_COMPILED_INLINE std::vector<Vec3<double>> ResponseField::unsound_positions() const {
   const double disc = 16 * (1 - nu_) / (3 * std::numbers::pi * std::numbers::pi);
-  std::vector<Vec3<double>> places;
+  std::vector<Vec3<double>> positions;
   for (std::size_t k = 0; k < load_mesh_.solved(); ++k) {
     const LoadNode& node = load_mesh_.nodes()[k];
     bool is_held = false;  // next to the fixed region w is minus the disc's own
@@ -87,9 +87,9 @@ PALPATE_COMPILED_INLINE std::vector<Vec3<double>> ResponseField::unsound_places(
       is_held |= node.part[Eigen::Index(c)] > 0 && mesh_.fixed_vertex[mesh_.triangles[node.triangle][c]] != 0;
     Vec3<double> w = Vec3<double>::Zero();
     for (std::size_t l = 0; l < 3; ++l) w += node.normal[Eigen::Index(l)] * at(k, k, l);
-    if (!is_held && node.normal.dot(w) * node.size < -disc) places.push_back(node.source);
+    if (!is_held && node.normal.dot(w) * node.size < -disc) positions.push_back(node.source);
   }
-  return places;
+  return positions;
 }
 
 PALPATE_COMPILED_INLINE void ResponseField::build_from(const MeshData<double>& mesh,

@@ -37,7 +37,7 @@ void bound_below(M& C, double min) noexcept {
       on += A(q, q) * A(q, q);
       for (Eigen::Index p = 0; p < q; ++p) off += A(p, q) * A(p, q);
     }
-    if (!(off > 1e-18 * on)) break;
+    if (!(off > 1e-18 * on)) break;  // less than 1e-9 of the diagonal (chosen)
     for (Eigen::Index q = 1; q < n; ++q)
       for (Eigen::Index p = 0; p < q; ++p) {
         const double both = A(p, q);

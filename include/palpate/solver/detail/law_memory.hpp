@@ -26,7 +26,8 @@ struct LawMemory {
   typename Law::Scalar weight{};  ///< w, the greatest so far [-]
   typename Law::Scalar force{};   ///< of the law without memory in the last tick [N]
   typename Law::Scalar depth{};   ///< D of the last tick [m]
-  Vec3<typename Law::Scalar> place = Vec3<typename Law::Scalar>::Zero();   ///< on the undeformed surface [m]
+  Vec3<typename Law::Scalar> position =
+      Vec3<typename Law::Scalar>::Zero();                                  ///< on the undeformed surface [m]
   Vec3<typename Law::Scalar> normal = Vec3<typename Law::Scalar>::Zero();  ///< outward, unit
   typename Law::Scalar area{};  ///< that carried the force, the greatest so far [m^2]
   std::uint32_t id = 0;         ///< of the region
@@ -34,15 +35,16 @@ struct LawMemory {
 };
 
 /// What stays where a region was: a contact without points and force whose displacement is the depth at which
-/// the law gives no force in this state; nothing below the rounding of its place, which what relaxes reaches.
+/// the law gives no force in this state; nothing below the rounding of its position, which what relaxes
+/// reaches.
 template <StatefulForceLaw Law, class Contacts>
 void add_dent(const Law& law, const LawMemory<Law>& m, Contacts& contacts) noexcept {
   using S = typename Law::Scalar;
   const S depth = m.kept ? law.depth(S(0), m.state) : S(0);
-  if (!(depth > std::numeric_limits<S>::epsilon() * m.place.norm())) return;
+  if (!(depth > std::numeric_limits<S>::epsilon() * m.position.norm())) return;
   const Vec3<S> D = -depth * m.normal, zero = Vec3<S>::Zero();
   contacts.push_back(
-      {m.id, 0, ContactMode::frictionless, m.place + D, m.normal, D, zero, zero, S(0), m.area, depth});
+      {m.id, 0, ContactMode::frictionless, m.position + D, m.normal, D, zero, zero, S(0), m.area, depth});
 }
 /// All of those in which nothing touches.
 template <StatefulForceLaw Law, class Regions, std::size_t N, class Contacts>
@@ -101,7 +103,7 @@ template <class Sum, Real S>
 /// A new region in slot k takes over what a contact left nearest to it, within the law's extent; what slot k
 /// held goes to a free slot if there is one.
 template <StatefulForceLaw Law, class Regions, Real S, std::size_t N>
-void recall(const Law& law, const Regions& regions, std::size_t k, const Vec3<S>& place,
+void recall(const Law& law, const Regions& regions, std::size_t k, const Vec3<S>& position,
             std::array<LawMemory<Law>, N>& memory) noexcept {
   std::size_t found = N, empty = N;
   if constexpr (HasExtent<Law>) {
@@ -112,7 +114,7 @@ void recall(const Law& law, const Regions& regions, std::size_t k, const Vec3<S>
         empty = j;
         continue;
       }
-      const S distance = (memory[j].place - place).norm();
+      const S distance = (memory[j].position - position).norm();
       if (!(distance <= nearest)) continue;
       nearest = distance;
       found = j;
@@ -218,7 +220,7 @@ template <StatefulForceLaw Law, class Sum, Real S>
           .weight = weight,
           .force = sum.normal_force(),
           .depth = depth,
-          .place = origin_of(sum, sum.deepest),
+          .position = origin_of(sum, sum.deepest),
           .normal = sum.normal(),
           .area = (std::max)(m.area, sum.area()),
           .id = id,

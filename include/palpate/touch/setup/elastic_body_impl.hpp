@@ -26,7 +26,7 @@ inline constexpr const char* elastic_body = "ElasticBody";
 inline constexpr double longest_body = 10, shortest_body = 1e-3;  // [m]: chosen; a tool in a hand is between
 inline constexpr double refined_triangles = 60000;  // chosen: chords below the samples' own error, 0.1 s
 inline constexpr double softest_body = 10;          // [Pa]: chosen; the softest gels have 100
-inline constexpr double most_unsound = 0.1;         // of the places: chosen; fingers of 2 % of a body: 0.1 %
+inline constexpr double most_unsound = 0.1;  // of the positions: chosen; fingers of 2 % of a body: 0.1 %
 
 /// What a cache was written for: bytes whose checksum it carries.
 class CacheKey {
@@ -91,14 +91,14 @@ inline void add_fixed_part(CacheKey& key, const TriangleMesh<double>& mesh, cons
 }
 
 inline void require_sound(const ResponseField& field) {
-  const std::vector<Vec3<double>> unsound = field.unsound_places();
+  const std::vector<Vec3<double>> unsound = field.unsound_positions();
   const std::size_t all = field.load_mesh().solved();
   if (!(double(unsound.size()) > most_unsound * double(all))) return;
   char text[230];
   std::snprintf(
       text, sizeof text,
-      "the response is no elastic body's at %zu of %zu places, first near (%.4g, %.4g, %.4g) m; ask "
-      "for more vertices: is a part too thin for these, or held by few of them?",
+      "the response is no elastic body's at %zu of %zu positions, first near (%.4g, %.4g, %.4g) m; ask "
+      "for more vertices: is a part too thin for these, or fixed at few of them?",
       unsound.size(), all, unsound[0].x(), unsound[0].y(), unsound[0].z());
   fail(elastic_body, text);
 }

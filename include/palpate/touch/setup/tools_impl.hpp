@@ -57,7 +57,7 @@ inline constexpr std::size_t tool_vertices = 1500;    // chosen: chords of a cir
   MeshTool tool{mesh.data(), params.spacing, params.centre_of_mass};
   if (tool.spacing > 0) return tool;
   double area = params.contact_area > 0 ? params.contact_area : nominal;
-  if (!(area > 0)) area = 0.1 * mesh.area();
+  if (!(area > 0)) area = 0.1 * mesh.area();  // chosen
   tool.spacing = std::sqrt((std::max)(area / points_on_contact_area, mesh.area() / most_points));
   return tool;
 }

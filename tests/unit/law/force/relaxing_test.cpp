@@ -97,7 +97,8 @@ TEST_CASE("relaxing: against a fine integration of its equation, pressed, held a
     const double reference = (std::max)(rubber.force(depth_at(t)) - lost, 0.0);
     worst = (std::max)(worst, std::abs(tissue.force(depth_at(t), state) - reference));
   }
-  // Ticks a tenth of the shortest time: where contact is lost within one, up to a tenth of a tick's change of F.
+  // Ticks a tenth of the shortest time: where contact is lost within one, up to a tenth of a tick's change of
+  // F.
   CHECK(worst <= 2e-3 * rubber.force(7e-3));
 }
 

@@ -124,7 +124,7 @@ TEST_CASE("tabulated: converges to the law it samples") {
 }
 
 #if PALPATE_HAS_EXCEPTIONS
-TEST_CASE("tabulated: bad data is refused with its place and value") {
+TEST_CASE("tabulated: bad data is refused with its position and value") {
   using Law = TabulatedForce<double, 4>;
   using Sample = Law::Sample;
   const double nan = std::numeric_limits<double>::quiet_NaN();

@@ -66,21 +66,21 @@ TEST_CASE("work: over random closed paths friction never gives energy to the use
     Slider slider;
     double a[4], p[4];
     for (int k = 0; k < 4; ++k) a[k] = amplitude(random), p[k] = phase(random);
-    const auto place = [&](double t) {
+    const auto position = [&](double t) {
       return V(
           a[0] * std::sin(6.28318530717958648 * t + p[0]) + a[1] * std::sin(12.5663706143591730 * t + p[1]),
           0,
           a[2] * std::sin(6.28318530717958648 * t + p[2]) + a[3] * std::sin(18.8495559215387594 * t + p[3]));
     };
     constexpr int steps = 4000;
-    V last = place(0);
+    V last = position(0);
     slider.X.translation = last;
     slider.anchor =
         Anchor<double>::begin(slider.X, V(last - V(0, slider.depth, 0)), V::UnitY(), slider.depth);
     V force = V::Zero();
     double work_on_user = 0, scale = 0;
     for (int i = 1; i <= steps; ++i) {
-      const V now = place(double(i) / steps);
+      const V now = position(double(i) / steps);
       const AnchoredForce<double> held = slider.move_to(now);
       work_on_user += 0.5 * (force + held.friction).dot(now - last);  // trapezoid
       scale += 0.5 * (force + held.friction).norm() * (now - last).norm();

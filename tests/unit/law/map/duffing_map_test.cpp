@@ -91,7 +91,7 @@ TEST_CASE("whatever the nodes have, every blend is a law, and none folds earlier
 }
 
 TEST_CASE(
-    "the configurational force is minus the energy's derivative with the place, softening and beyond the "
+    "the configurational force is minus the energy's derivative with the position, softening and beyond the "
     "fold included") {
   const DuffingMap<double> map(
       {.spacing = 0.01, .lower = Vec3<double>::Constant(-0.04), .upper = Vec3<double>::Constant(0.04)},
@@ -157,7 +157,7 @@ TEST_CASE("frictionless contact on an uneven object gains and loses no energy on
 }
 
 TEST_CASE(
-    "forces and torques follow the place without a click, with friction and regions, and without heap") {
+    "forces and torques follow the position without a click, with friction and regions, and without heap") {
   const Ellipsoid<double> object({.axes = Vec3<double>(0.06, 0.04, 0.05)});
   const ToolPoints<double> ball(TriangleMesh<double>(Sphere<double>({.radius = 0.01}).mesh(300)),
                                 {.contact_area = 1e-4}, 1e-3);

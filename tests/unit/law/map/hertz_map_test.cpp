@@ -55,7 +55,7 @@ TEST_CASE("whatever the nodes have, every blend is a law") {
   }
 }
 
-TEST_CASE("the configurational force is minus the energy's derivative with the place") {
+TEST_CASE("the configurational force is minus the energy's derivative with the position") {
   for (const double compliance : {1e-4, -1e-4}) {  // the latter: most beyond the end of the series
     const HertzMap<double> map = uneven(compliance);
     std::mt19937 random(3);
@@ -78,14 +78,14 @@ TEST_CASE("a frictionless ball on an uneven object gains and loses no energy on 
     ContactSolver<Sphere<double>, HertzMap<double>> solver(
         {Sphere<double>({.radius = 0.05}), {}, uneven(compliance), {}, {}});
     const int steps = 20000;
-    const auto place = [&](double s) {
+    const auto position = [&](double s) {
       const double angle = 2 * 3.14159265358979323846 * s / steps;
       return V(0.02 * std::cos(angle), 0.041 + 0.003 * std::sin(3 * angle), 0.02 * std::sin(angle));
     };
     double work = 0, moved = 0;
     for (int i = 0; i < steps; ++i) {
-      const V felt = solver.tick({Mat3<double>::Identity(), place(i + 0.5)}).wrench.force;
-      const double dW = felt.dot(place(i + 1) - place(i));
+      const V felt = solver.tick({Mat3<double>::Identity(), position(i + 0.5)}).wrench.force;
+      const double dW = felt.dot(position(i + 1) - position(i));
       work += dW;
       moved += std::abs(dW);
     }
