@@ -66,7 +66,8 @@ set_source_files_properties(${generated}/folder_palpate_law_force.cpp PROPERTIES
 function(palpate_headers_alone target sources)  # and flags
   add_library(${target} OBJECT ${${sources}})
   palpate_own_target(${target})
-  target_compile_options(${target} PRIVATE -O0 ${ARGN})
+  # Nothing links these objects: templates are checked, and no code is made of them.
+  target_compile_options(${target} PRIVATE -O0 -fno-implicit-templates -fno-implicit-inline-templates ${ARGN})
   target_link_libraries(${target} PRIVATE ${adapter_libraries})
 endfunction()
 # One compiler is enough: an include that is missing is missing for all.

@@ -16,10 +16,10 @@
 ///
 /// Header-only is the default. Functions that cost much to compile are defined in files of their own, which
 /// headers include at their end: what only set-up needs in `setup/*_impl.hpp`, the response field's stages in
-/// `response/tick/` (make_stages.hpp). With PALPATE_COMPILED they do not: src/mesh.cpp, src/palpate.cpp and
-/// src/touch.cpp hold those functions, once, and the program links them; also the tick of one contact and of
-/// four (instances.hpp). Meshes and tools are then of float or double. The CMake target palpate::compiled
-/// defines the macro and links the library.
+/// `response/tick/` (make_stages.hpp). With PALPATE_COMPILED they do not: the files in src/ hold those
+/// functions, once, and the program links them; also the tick of one contact and of four (instances.hpp).
+/// Meshes and tools are then of float or double. The CMake target palpate::compiled defines the macro and
+/// links the library.
 
 #if __has_include(<palpate_config.hpp>)
 #include <palpate_config.hpp>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file The tick of one contact and of four, which programs with PALPATE_COMPILED link: src/palpate.cpp.
+/// @file The tick of one contact and of four, which programs with PALPATE_COMPILED link:
+/// src/response_tick.cpp.
 
 #include <palpate/config.hpp>
 

@@ -2,7 +2,7 @@
 #pragma once
 
 /// @file What makes the stages of a contact (stages.hpp) from those before, and their parts of the field.
-/// With PALPATE_COMPILED src/palpate.cpp alone includes the files that define it.
+/// With PALPATE_COMPILED src/response_tick.cpp alone includes the files that define it.
 ///
 /// | function | file |
 /// |---|---|

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 
-/// @file Set-up and tick of response fields, samples of tools, compiled once for programs with
+/// @file Tick and drawing of response fields, samples of tools, compiled once for programs with
 /// PALPATE_COMPILED (config.hpp).
 
 #ifndef PALPATE_COMPILED
@@ -9,13 +9,7 @@
 
 #define PALPATE_TICK_INSTANCE template
 #include <palpate/resolved/setup/contact_samples_impl.hpp>
-#include <palpate/response/setup/load_mesh_impl.hpp>
-#include <palpate/response/setup/mid_edge_table_impl.hpp>
-#include <palpate/response/setup/patch_table_impl.hpp>
 #include <palpate/response/setup/response_display_impl.hpp>
-#include <palpate/response/setup/response_field_impl.hpp>
-#include <palpate/response/setup/rotation_table_impl.hpp>
-#include <palpate/response/setup/save_impl.hpp>
 #include <palpate/response/tick/contact_coupling.hpp>
 #include <palpate/response/tick/instances.hpp>
 #include <palpate/response/tick/near_coefficients.hpp>
