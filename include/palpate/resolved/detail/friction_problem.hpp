@@ -39,11 +39,10 @@ inline constexpr float rounding2 = 4e-12f;
 /// changes.
 struct FrictionLists : LoadLists {
   VectorList anchor, load_step, u_step;
-  AlignedList<float>
-      anchored;               ///< 1 where the point has an anchor, 0 where it has just come in: no tractions
-  AlignedList<float> per_mu;  ///< limit of the tractions over mu q, s
-  float step = 0;             ///< the last tick's last; 0: none [1/m]
-  float mu = 0;               ///< of the result
+  AlignedList<float> anchored;  ///< 1 where the point has an anchor; 0 where it is new: no tractions
+  AlignedList<float> per_mu;    ///< limit of the tractions over mu q, s
+  float step = 0;               ///< the last tick's last; 0: none [1/m]
+  float mu = 0;                 ///< of the result
   void resize(std::size_t size) {
     LoadLists::resize(size);
     for (auto* list : {&anchor, &load_step, &u_step}) list->resize(size);

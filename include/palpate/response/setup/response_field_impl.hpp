@@ -82,12 +82,13 @@ PALPATE_COMPILED_INLINE std::vector<Vec3<double>> ResponseField::unsound_positio
   std::vector<Vec3<double>> positions;
   for (std::size_t k = 0; k < load_mesh_.solved(); ++k) {
     const LoadNode& node = load_mesh_.nodes()[k];
-    bool is_held = false;  // next to the fixed region w is minus the disc's own
+    bool is_beside_fixed = false;  // next to the fixed region w is minus the disc's own
     for (std::size_t c = 0; c < 3; ++c)
-      is_held |= node.part[Eigen::Index(c)] > 0 && mesh_.fixed_vertex[mesh_.triangles[node.triangle][c]] != 0;
+      is_beside_fixed |=
+          node.part[Eigen::Index(c)] > 0 && mesh_.fixed_vertex[mesh_.triangles[node.triangle][c]] != 0;
     Vec3<double> w = Vec3<double>::Zero();
     for (std::size_t l = 0; l < 3; ++l) w += node.normal[Eigen::Index(l)] * at(k, k, l);
-    if (!is_held && node.normal.dot(w) * node.size < -disc) positions.push_back(node.source);
+    if (!is_beside_fixed && node.normal.dot(w) * node.size < -disc) positions.push_back(node.source);
   }
   return positions;
 }

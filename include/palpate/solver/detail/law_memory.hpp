@@ -22,16 +22,16 @@ namespace palpate::detail {
 /// Of one region, or of one that was there.
 template <StatefulForceLaw Law>
 struct LawMemory {
+  using S = typename Law::Scalar;
   typename Law::State state{};
-  typename Law::Scalar weight{};  ///< w, the greatest so far [-]
-  typename Law::Scalar force{};   ///< of the law without memory in the last tick [N]
-  typename Law::Scalar depth{};   ///< D of the last tick [m]
-  Vec3<typename Law::Scalar> position =
-      Vec3<typename Law::Scalar>::Zero();                                  ///< on the undeformed surface [m]
-  Vec3<typename Law::Scalar> normal = Vec3<typename Law::Scalar>::Zero();  ///< outward, unit
-  typename Law::Scalar area{};  ///< that carried the force, the greatest so far [m^2]
-  std::uint32_t id = 0;         ///< of the region
-  bool kept = false;            ///< there is something to remember
+  S weight{};                          ///< w, the greatest so far [-]
+  S force{};                           ///< of the law without memory in the last tick [N]
+  S depth{};                           ///< D of the last tick [m]
+  Vec3<S> position = Vec3<S>::Zero();  ///< on the undeformed surface [m]
+  Vec3<S> normal = Vec3<S>::Zero();    ///< outward, unit
+  S area{};                            ///< that carried the force, the greatest so far [m^2]
+  std::uint32_t id = 0;                ///< of the region
+  bool kept = false;                   ///< there is something to remember
 };
 
 /// What stays where a region was: a contact without points and force whose displacement is the depth at which
