@@ -25,6 +25,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <numeric>
 #include <span>
@@ -91,6 +92,10 @@ class ResolvedState {
   }
   [[nodiscard]] const Residual& residual() const noexcept { return residual_; }
   [[nodiscard]] bool slides() const noexcept { return slides_; }
+  /// Of what acts, in contact: what is left out.
+  [[nodiscard]] Status left_out() const noexcept {
+    return beside_.status() | (has_room_ && regular_.has_all() ? Status::ok : Status::point_overflow);
+  }
 
   /// Area that touches [m^2].
   [[nodiscard]] float area() noexcept {
@@ -148,19 +153,16 @@ class ResolvedState {
     return deepest;
   }
 
-  /// Solves for the loads with the tool at X. Not ok where not all that acts is taken in.
+  /// Solves for the loads with the tool at X.
   template <class Friction>
-  [[nodiscard]] Status solve(const Force& force, const Friction& friction, const ToolPoints<S>& tool,
-                             const Pose<S>& X) noexcept {
+  void solve(const Force& force, const Friction& friction, const ToolPoints<S>& tool,
+             const Pose<S>& X) noexcept {
     const bool first = contacts_.empty();
     contacts_.clear(), residual_ = {};
     const Pose<S> before = std::exchange(pose_, X);
-    float size2 = 0;
+    if (touching_.empty()) return forget();
+    float size2 = (std::numeric_limits<float>::min)();  // squares of depths may be no floats
     for (const Touching& c : touching_) size2 += c.depth * c.depth;
-    if (!(size2 > 0)) {  // no point touches, or none by 1e-22 m, whose square is no float
-      forget();
-      return Status::ok;
-    }
     const float tolerance = static_cast<float>(force.params().tolerance) * std::sqrt(size2);
     const Vec3<S>& x = tool.point(touching_[0].point);
     const float moved = first ? 0.f : static_cast<float>((X * x - before * x).norm());
@@ -184,7 +186,6 @@ class ResolvedState {
     }
     finish(tool, moved);
     beside_.drop();
-    return beside_.status() | (has_room_ && regular_.has_all() ? Status::ok : Status::point_overflow);
   }
 
  private:

@@ -51,9 +51,9 @@ class ResolvedCollector {
     } while (state.look_again(++looks));
     const S shift = state.shift();  // of this tick: solve() leaves the next one's
     const bool was_touching = state.has_contact();
-    result.status |= state.solve(force, friction, tool, X);
+    state.solve(force, friction, tool, X);
     if (!state.has_contact()) return;
-    result.status |= Status::contact;
+    result.status |= Status::contact | state.left_out();
     if (deepest > object.reach()) result.status |= Status::beyond_reach;
     if (!(state.residual().relative <= S(10) * static_cast<S>(force.params().tolerance)))
       result.status |= Status::unconverged;
