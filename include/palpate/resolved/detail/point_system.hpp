@@ -131,6 +131,7 @@ class PointSystem {
       add_pairs<false>(P, u);
     for (std::size_t i = 0; i < stride_; i += V::size()) u.store(i, u.load(i) + backs_.load(i));
   }
+  [[nodiscard]] float b() const noexcept { return b_; }
   /// Of the tangential over the normal response, all over the contact.
   [[nodiscard]] float tangential_share() const noexcept { return (1.5f + b_ / 2) / (1 + b_); }
   /// Half of the mean displacement by a unit load all over the contact's area, 3 (1 + b)/sqrt(area) [1/m]:

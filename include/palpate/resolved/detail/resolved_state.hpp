@@ -98,12 +98,11 @@ class ResolvedState {
   }
 
   /// Area that touches [m^2].
-  [[nodiscard]] float area() noexcept {
-    unloaded_.clear();
-    for (const Touching& c : touching_)
-      if (!points_[c.point].loaded) unloaded_.add(c.x);
-    unloaded_.pad();
-    return contact_area(system_, pressure_, unloaded_);
+  [[nodiscard]] float area(const ToolPoints<S>& tool) noexcept {
+    unloaded_.take(touching_, points_);
+    return contact_area(system_, pressure_, unloaded_, [&](std::size_t i) noexcept {
+      return rounded_rim_pressure(tool, touching_[inside_[i]], system_.b());
+    });
   }
 
   void begin_tick(const ContactSurface auto& object, const Force& force, const ToolPoints<S>& tool,

@@ -48,11 +48,13 @@ class CentroidalCells {
     }
     find_neighbours(cell2);
     assign();
+    std::vector<Vec3<double>> sums(cells_.size(), Vec3<double>::Zero());
+    for (std::size_t i = 0; i < samples.size(); ++i) sums[owner_[i]] += samples[i].area * samples[i].n;
     for (std::size_t k = 0; k < cells_.size(); ++k) {
       if (!(cells_[k].area > 0)) continue;  // squeezed out, as on a narrow tip
       out.points.push_back(cells_[k].x);
       out.areas.push_back(cells_[k].area);
-      out.vector_areas.push_back(cells_[k].area * cells_[k].n);
+      out.vector_areas.push_back(sums[k].norm() * cells_[k].n);
     }
   }
 

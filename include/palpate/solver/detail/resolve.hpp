@@ -84,7 +84,7 @@ class ResolvedCollector {
       ++out.points;
     }
     out.id = state.id;
-    out.area = static_cast<S>(state.area());
+    out.area = static_cast<S>(state.area(tool));
     out.mode = !State::has_friction ? ContactMode::frictionless
                : state.slides()     ? ContactMode::sliding
                                     : ContactMode::sticking;
