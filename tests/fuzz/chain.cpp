@@ -126,7 +126,7 @@ void walk(Chain& chain, Bytes& in) {
       }();
       const auto& [force, torque] = out.wrench;
       require(is_finite(force) && is_finite(torque), "what is sent is finite");
-      const auto& limits = chain.params().limits;
+      const auto& limits = chain.params().limits;  // 1e-12: some roundings of the norm, scaled
       require(force.norm() <= limits.max_force * (1 + 1e-12), "no force is above the limit");
       require(torque.norm() <= limits.max_torque * (1 + 1e-12), "no torque is above the limit");
       if (!chain.params().has_torque) require(torque.isZero(0), "no torque without motors for it");

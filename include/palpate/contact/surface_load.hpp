@@ -22,12 +22,9 @@ struct SurfaceLoad {
 /// to 1e12 m^2, no component of the mean stress above 1e4 E, where E times depth over width is common.
 template <Real S>
 [[nodiscard]] inline bool is_usable(const SurfaceLoad<S>& load, S E) noexcept {
-  const auto within = [](const Vec3<S>& v, S most) {
-    return is_within(v.x(), most) && is_within(v.y(), most) && is_within(v.z(), most);
-  };
-  return within(load.position, S(1e6)) && within(load.direction, S(2)) &&
+  return is_within(load.position, S(1e6)) && is_within(load.direction, S(2)) &&
          is_within(load.direction.squaredNorm() - S(1), S(1e-3)) && is_within(load.area, S(1e12)) &&
-         load.area >= S(1e-18) && within(load.force, S(1e4) * E * load.area) &&
+         load.area >= S(1e-18) && is_within(load.force, S(1e4) * E * load.area) &&
          is_within(load.softening, S(1e3));
 }
 

@@ -28,15 +28,13 @@ struct Pose {
 /// driver rounds.
 template <Real S>
 [[nodiscard]] inline bool is_usable(const Pose<S>& X, S limit = S(1e6), S tolerance = S(1e-3)) noexcept {
-  const auto within = [](const Vec3<S>& v, S most) {
-    return is_within(v.x(), most) && is_within(v.y(), most) && is_within(v.z(), most);
-  };
   const Vec3<S> x = X.rotation.col(0), y = X.rotation.col(1), z = X.rotation.col(2);
   // Entries below 2 first, so that nothing overflows after that.
-  if (!within(X.translation, limit) || !within(x, S(2)) || !within(y, S(2)) || !within(z, S(2))) return false;
+  if (!is_within(X.translation, limit) || !is_within(x, S(2)) || !is_within(y, S(2)) || !is_within(z, S(2)))
+    return false;
   // Of z the length needs no test: it is x cross y.
-  return within(Vec3<S>(x.squaredNorm() - S(1), y.squaredNorm() - S(1), x.dot(y)), tolerance) &&
-         within(x.cross(y) - z, tolerance);
+  return is_within(Vec3<S>(x.squaredNorm() - S(1), y.squaredNorm() - S(1), x.dot(y)), tolerance) &&
+         is_within(Vec3<S>(x.cross(y) - z), tolerance);
 }
 
 /// The tool's pose in the object's coordinates; both poses are in world coordinates.

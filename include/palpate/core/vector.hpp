@@ -23,6 +23,11 @@ template <Real S>
 [[nodiscard]] inline bool is_finite(const Vec3<S>& v) noexcept {
   return is_finite(v.x()) && is_finite(v.y()) && is_finite(v.z());
 }
+/// is_within() of every entry.
+template <Real S>
+[[nodiscard]] inline bool is_within(const Vec3<S>& v, S limit) noexcept {
+  return is_within(v.x(), limit) && is_within(v.y(), limit) && is_within(v.z(), limit);
+}
 
 /// v without its component along the unit vector n.
 template <Real S>
