@@ -202,7 +202,7 @@ namespace detail {
 /// Inverse of what acts on the body for the unit forces at a node: the identity, nearly. Its singular values
 /// are bounded where a mesh that folds over itself leaves hardly any force.
 [[nodiscard]] inline Mat3<double> bounded_inverse(const Mat3<double>& force) {
-  const Eigen::JacobiSVD<Matrix> parts(Matrix(force), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Mat3<double>> parts(force, Eigen::ComputeFullU | Eigen::ComputeFullV);
   return parts.matrixV() * parts.singularValues().cwiseMax(setup::min_force).cwiseInverse().asDiagonal() *
          parts.matrixU().transpose();
 }
