@@ -11,11 +11,11 @@ namespace palpate {
 /// A force on a cell of the surface. A plain value in object coordinates, as ContactState is.
 template <Real S>
 struct SurfaceLoad {
-  Vec3<S> position;   ///< on the undeformed surface [m]
-  Vec3<S> direction;  ///< of pressing, into the body, unit
-  Vec3<S> force;      ///< on the body [N]
-  S area;             ///< of the cell [m^2]
-  S softening = 0;    ///< by finite strain: near it 1 + softening of the half-space's displacement
+  Vec3<S> position;                     ///< on the undeformed surface [m]
+  Vec3<S> direction;                    ///< of pressing, into the body, unit
+  Vec3<S> force;                        ///< on the body [N]
+  S area;                               ///< of the cell [m^2]
+  Vec3<S> by_strain = Vec3<S>::Zero();  ///< finite strain: near it force + by_strain acts [N]
 };
 
 /// Whether a body of Young's modulus E [Pa] can have it: position and direction as a pose's, an area of 1e-18
@@ -25,7 +25,7 @@ template <Real S>
   return is_within(load.position, S(1e6)) && is_within(load.direction, S(2)) &&
          is_within(load.direction.squaredNorm() - S(1), S(1e-3)) && is_within(load.area, S(1e12)) &&
          load.area >= S(1e-18) && is_within(load.force, S(1e4) * E * load.area) &&
-         is_within(load.softening, S(1e3));
+         is_within(load.by_strain, S(1e4) * E * load.area);
 }
 
 }  // namespace palpate

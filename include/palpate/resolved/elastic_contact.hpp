@@ -47,7 +47,8 @@ namespace detail {
 struct NoRegularPart {
   static constexpr bool active = false;
   NoRegularPart(const auto& /*body*/, std::size_t /*capacity*/) {}
-  [[nodiscard]] static constexpr float sunk() noexcept { return 0; }
+  [[nodiscard]] static constexpr bool is_left_out() noexcept { return false; }
+  [[nodiscard]] static Vec3<float> moved() noexcept { return Vec3<float>::Zero(); }
   [[nodiscard]] static constexpr bool has_all() noexcept { return true; }
   [[nodiscard]] static Mat3<float> common() noexcept { return Mat3<float>::Zero(); }
 };

@@ -26,6 +26,16 @@ namespace palpate::detail {
 /// (K P)/d of the last tick. k is that of a ball on a flat body; on a convex one the tool's part of the
 /// curvature is less: left out.
 ///
+/// Pressed, it is stiffer across, as a bonded patch (response/second_order.hpp, drag):
+///
+///     u = K P + W P - G sum_j P_j,   G = c kappa/(1 + kappa) (m.m - m m^T),   c = pi (2 - nu)/(2 a)
+///     kappa = drag (2 - nu)/8 beta/(1 + beta^2),   beta = 2/3 sqrt(e)
+///
+/// c: a disc's compliance across, the least of any loads on it, so K - G stays positive; beta: how deep a
+/// punch of the same mean pressure is, over its radius a; pi a^2 = 9/8 load/p, the area under a ball. The
+/// body resists a turn as the linear one: only the sum of the loads counts. m, the mean direction by
+/// load (0 where a tool presses from two sides), a, p: of the last tick.
+///
 /// Where a tool slides, friction takes mu p per area of its surface and length of the body's surface that
 /// passes it. Of a slope g between the tool's normal and m both are larger than seen along m, by
 /// sqrt(1 + g^2) and sqrt(1 + g^2/2), the mean over directions. And p has pressed together what passes, by
@@ -41,19 +51,26 @@ class FiniteStrain {
 
   explicit FiniteStrain(double nu)
       : k_(static_cast<float>(SecondOrder{}.at(nu).sphere_softening)),
+        across_(static_cast<float>(SecondOrder{}.at(nu).drag * (2 - nu) / 8)),
+        compliance_across_(static_cast<float>(std::numbers::pi * (2 - nu) / 2)),
         root_of_strain_(
             static_cast<float>(std::numbers::pi / 2 * (4. / 3) * 2 * std::numbers::pi * (1 - nu))),
         strain_across_(static_cast<float>(-(1 - 2 * nu) * std::numbers::pi)) {}
 
-  void forget() noexcept { softening_ = 0, factor_ = 1; }
-  /// After a solve with the normal loads q: r, displacements along the directions of pressing less the
+  void forget() noexcept {
+    softening_ = 0, factor_ = 1;
+    common_.setZero(), stiffened_.setZero();
+  }
+  /// After a solve for the loads P, q along the directions of pressing: r, displacements along these less the
   /// depths; w, the regular part, and `given`, by others' loads, both of which are not K P [m].
-  void measure(const PointSystem& system, const float* q, const float* r, const VectorList& w,
-               const auto& given) noexcept {
+  void measure(const PointSystem& system, const VectorList& P, const float* q, const float* r,
+               const VectorList& w, const auto& given) noexcept {
     V loads{}, pressures{}, sunks{}, rests{};
+    SimdVec3<V> directions{}, all{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const V qi(q + i), beside = dot(system.directions().load(i), given.beyond(i));
       loads += qi, pressures += qi * qi / V(system.areas() + i);
+      directions += qi * system.directions().load(i), all += P.load(i);
       sunks += qi * (V(r + i) + V(&system.depth[i]) + beside);
       rests += qi * (dot(system.directions().load(i), w.load(i)) + beside);
     }
@@ -63,7 +80,23 @@ class FiniteStrain {
     const float root = root_of_strain_ * pressed / load, e = root * root;
     softening_ = k_ * e / std::sqrt(1 + e * e);
     factor_ = 1 / (1 + softening_ * clamp(1 - by_rest / sunk, 0.f, 1.f));
+    const float beta = root * (2.f / 3), kappa = across_ * beta / (1 + beta * beta),
+                a = std::sqrt(9 * load * load / (8 * std::numbers::pi_v<float> * pressed));
+    const Vec3<float> m = sum_of(directions) / load;
+    const Mat3<float> across = m.squaredNorm() * Mat3<float>::Identity() - m * m.transpose(),
+                      stiffened = kappa / (1 + kappa) * across;
+    common_ = compliance_across_ / a * stiffened;
+    stiffened_ = stiffened * sum_of(all) / load;
   }
+  /// u -= G sum_j P_j.
+  void add(const PointSystem& system, const VectorList& P, VectorList& u) const noexcept {
+    SimdVec3<V> loads{};
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) loads += P.load(i);
+    const SimdVec3<V> moved = each<V>(Vec3<float>(common_ * sum_of(loads)));
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) u.store(i, u.load(i) - moved);
+  }
+  /// G [1/m]
+  [[nodiscard]] const Mat3<float>& common() const noexcept { return common_; }
   /// Of the depths.
   [[nodiscard]] float factor() const noexcept { return factor_; }
   /// s of points i .. of the tool's unit outward normals, with the normal loads q.
@@ -74,21 +107,30 @@ class FiniteStrain {
             strain = (max)(V(strain_across_) * q / V(system.areas() + i), V(-0.5f));
     return area * stretch * (V(1.f) + strain);
   }
+  /// What the near field of a load is drawn with beside it, q along m: k e more, and of all loads across m
+  /// kappa/(1 + kappa) less, shared as q is [m^2].
+  [[nodiscard]] Vec3<float> beside(const Vec3<float>& m, float q) const noexcept {
+    return q * (softening_ * m - stiffened_);
+  }
   /// k e
   [[nodiscard]] float softening() const noexcept { return softening_; }
 
  private:
   static constexpr float rim = 0.8f;  // cosine of the slope 3/4
 
-  float k_, root_of_strain_, strain_across_;  // p/E' = 2 pi (1 - nu) q/A, p/(4 mu) = pi q/A
+  float k_, across_, compliance_across_;  // kappa (1 + beta^2)/beta; c a
+  float root_of_strain_, strain_across_;  // p/E' = 2 pi (1 - nu) q/A, p/(4 mu) = pi q/A
   float softening_ = 0, factor_ = 1;
+  Mat3<float> common_ = Mat3<float>::Zero();     // G
+  Vec3<float> stiffened_ = Vec3<float>::Zero();  // what the near field lacks, per normal load
 };
 
 /// Of a body whose response is linear.
 struct LinearStrain {
   static constexpr bool active = false;
   explicit LinearStrain(double /*nu*/) {}
-  [[nodiscard]] static constexpr float softening() noexcept { return 0; }
+  [[nodiscard]] static Mat3<float> common() noexcept { return Mat3<float>::Zero(); }
+  [[nodiscard]] static Vec3<float> beside(const Vec3<float>&, float) noexcept { return Vec3<float>::Zero(); }
   [[nodiscard]] static constexpr float factor() noexcept { return 1; }
   [[nodiscard]] static VectorList::V limit_per_mu(const auto&...) noexcept { return VectorList::V(1.f); }
 };

@@ -161,10 +161,10 @@ class LoadField {
       }
       // What falls on the fixed region moves nothing.
       const double felt = 1 - share * (std::max)(1 - carried, 0.0);
-      near_loads_[i] = {x.template cast<float>(), load.direction.template cast<float>(),
-                        ((1 + double(load.softening)) * felt * per_load * load.force.template cast<double>())
-                            .template cast<float>(),
-                        static_cast<float>(load.area)};
+      near_loads_[i] = {
+          x.template cast<float>(), load.direction.template cast<float>(),
+          (felt * per_load * (load.force + load.by_strain).template cast<double>()).template cast<float>(),
+          static_cast<float>(load.area)};
     }
     drawn_.near = {(0.5 * (low + high)).cast<float>(),
                    static_cast<float>(0.5 * (high - low).norm()),

@@ -95,9 +95,9 @@ class PointSystem {
   [[nodiscard]] float norm_of_depths() const noexcept {
     return Eigen::Map<const Eigen::VectorXf>(depth.data(), static_cast<Eigen::Index>(size_)).norm();
   }
-  /// All points are less deep by w [m].
-  void sink(float w) noexcept {
-    for (std::size_t i = 0; i < size_; ++i) depth[i] -= w;
+  /// The surface is moved by w [m].
+  void move(const Vec3<float>& w) noexcept {
+    for (std::size_t i = 0; i < size_; ++i) depth[i] -= m_[i].dot(w);
   }
   /// u = K q, both along the directions of pressing. Precondition: no friction; zeros beyond size().
   void displace(const float* q, float* u) noexcept {

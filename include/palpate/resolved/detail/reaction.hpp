@@ -29,10 +29,11 @@ class Reaction {
   }
 
   /// Of the loads `result`, normal ones q. `slope`: gradient of the regular part along the surface; `beside`:
-  /// displacements by others' loads.
+  /// displacements by others' loads; `moved`: what the solve has left out of all displacements.
   void measure(const PointSystem& system, const float* q, const Loads& result, const SimdVec3<V>& slope,
-               const auto& beside) noexcept {
+               const auto& beside, const Vec3<float>& moved) noexcept {
     const V zero(0.f), one(1.f), tiny((std::numeric_limits<float>::min)());
+    const SimdVec3<V> all = each<V>(moved);
     V total{}, sticking{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const SimdVec3<V> m = system.directions().load(i), n = system.normals().load(i),
@@ -47,7 +48,7 @@ class Reaction {
         const auto holds = sticks && V(&result.anchored[i]) > zero;
         const SimdVec3<V> a = result.anchor.load(i),
                           kept{select(holds, a.x, u.x), select(holds, a.y, u.y), select(holds, a.z, u.z)};
-        anchor_.store(i, across(m, beside.load(i) + kept));
+        anchor_.store(i, across(m, beside.load(i) + kept + all));
         select(sticks, one, zero).copy_to(&sticks_[i]);
         total += qi, sticking += select(sticks, qi, zero);
       }

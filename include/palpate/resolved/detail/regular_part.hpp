@@ -121,27 +121,36 @@ class RegularPart {
   [[nodiscard]] bool has_all() const noexcept { return has_all_; }
 
   /// After a tick's solve: what the loads q have moved the contact by.
-  void keep(const PointSystem& system, const float* q) noexcept {
+  void keep(const float* q) noexcept {
     if (is_left_out_) return;
-    V loads{}, sunks{};
+    V loads{};
+    SimdVec3<V> moved{};
     for (std::size_t i = 0; i < size_; i += V::size()) {
       const V qi(q + i);
-      loads += qi, sunks += qi * dot(system.directions().load(i), w_.load(i));
+      loads += qi, moved += qi * w_.load(i);
     }
     const float load = reduce(loads);
-    sunk_ = load > 0 ? reduce(sunks) / load : 0;
+    if (load > 0)
+      moved_ = sum_of(moved) / load;
+    else
+      moved_.setZero();
   }
   /// Until take_in() loads have no response: K + W was not positive definite, as it is not where a body is
-  /// fixed at few elements, or too thin for them. The contact stays as deep as in the last tick, so that its
+  /// fixed at few elements, or too thin for them. The contact stays where the last tick moved it, so that its
   /// force goes on. False if W was left out before.
   bool leave_out() noexcept {
     begin_response();
     return !std::exchange(is_left_out_, true);
   }
-  void take_in() noexcept { is_left_out_ = false, sunk_ = 0; }
+  void take_in() noexcept {
+    is_left_out_ = false;
+    moved_.setZero();
+  }
   [[nodiscard]] bool is_left_out() const noexcept { return is_left_out_; }
   /// By what the contact is moved without its loads [m].
-  [[nodiscard]] float sunk() const noexcept { return is_left_out_ ? sunk_ : 0; }
+  [[nodiscard]] Vec3<float> moved() const noexcept {
+    return is_left_out_ ? moved_ : Vec3<float>(Vec3<float>::Zero());
+  }
 
   /// u += w along the directions of pressing, by loads q along them.
   void add(const PointSystem& system, const float* q, float* u) noexcept {
@@ -218,7 +227,7 @@ class RegularPart {
                                 const Vec3<float>& m) noexcept {
     Weights weights;
     place(body.field(), x, triangle, weights, false);
-    const float w = sunk() + m.dot(at(weights, u_of_all_));
+    const float w = m.dot(moved() + at(weights, u_of_all_));
     return beside_.empty() ? w : w + m.dot(at(weights, u_beside_));
   }
 
@@ -357,7 +366,7 @@ class RegularPart {
   std::size_t size_ = 0, stride_ = 0, nodes_ = 0;  // nodes_: in use by points
   std::uint32_t tick_ = 2;
   bool changed_ = true, has_all_ = true, is_left_out_ = false;
-  float sunk_ = 0;
+  Vec3<float> moved_ = Vec3<float>::Zero();
 };
 
 }  // namespace palpate::detail

@@ -76,12 +76,12 @@ class ResolvedState {
   void loads(List& out) const noexcept {
     out.clear();
     for (std::size_t i = 0; has_contact() && i < size() && !out.full(); ++i) {
-      const Touching& at = touching_[inside_[i]];
-      const Point& p = points_[at.point];
+      const Point& p = points_[touching_[inside_[i]].point];
       if (!p.loaded) continue;
-      out.push_back({origin_ + system_.foot(i).template cast<S>(), system_.direction(i).template cast<S>(),
+      const Vec3<float> m = system_.direction(i);
+      out.push_back({origin_ + system_.foot(i).template cast<S>(), m.template cast<S>(),
                      per_load_ * p.load.template cast<S>(), static_cast<S>(system_.area(i)),
-                     static_cast<S>(strain_.softening())});
+                     per_load_ * strain_.beside(m, m.dot(p.load)).template cast<S>()});
     }
   }
   /// Loads of other tools on the same body, for the next solve().
@@ -165,7 +165,10 @@ class ResolvedState {
     const float tolerance = static_cast<float>(force.params().tolerance) * std::sqrt(size2);
     const Vec3<S>& x = tool.point(touching_[0].point);
     const float moved = first ? 0.f : static_cast<float>((X * x - before * x).norm());
-    if constexpr (has_friction) move_anchors(before, X, tool);
+    if constexpr (has_friction)  // those that stick go with the tool
+      for (const Touching& c : touching_)
+        if (Point& p = points_[c.point]; p.loaded)
+          p.anchor += Vec3<S>(X * tool.point(c.point) - before * tool.point(c.point)).template cast<float>();
     // First those that carry load or came near to it.
     inside_.clear();
     for (std::uint32_t c = 0; c < touching_.size(); ++c) {
@@ -179,7 +182,8 @@ class ResolvedState {
                              : 1.f);
       solve_inside(force, friction, tolerance);
       if constexpr (Strain::active)
-        strain_.measure(system_, pressure_.q.data(), pressure_.r.data(), regular_.response(), beside_);
+        strain_.measure(system_, result_.load, pressure_.q.data(), pressure_.r.data(), regular_.response(),
+                        beside_);
       const bool again = Strain::active && first && round == 0;  // the strain was not known
       if (round == most_rounds || !take_in(force, tool, tolerance, again)) break;
     }
@@ -217,7 +221,7 @@ class ResolvedState {
     for (std::size_t i = 0; i < size(); ++i) {
       if constexpr (Shift::active)
         system_.depth[i] += touching_[inside_[i]].shifted * system_.direction(i).dot(shift_.v());
-      system_.depth[i] = strain_.factor() * system_.depth[i] - regular_.sunk();
+      system_.depth[i] = strain_.factor() * system_.depth[i];
       last_.set(i, point(i));
       if constexpr (has_friction && Strain::active) outward_.set(i, touching_[inside_[i]].outward);
     }
@@ -229,6 +233,7 @@ class ResolvedState {
     }
     if constexpr (Beside::active) beside_.place(force.compliance(), origin_, per_load_, regular_);
     if constexpr (RegularPart::active) regular_.build();
+    if (regular_.is_left_out()) system_.move(regular_.moved());
     if constexpr (Beside::active) beside_.move_points(system_, regular_);
   }
   template <class Friction>
@@ -242,12 +247,13 @@ class ResolvedState {
     else
       left = solve_loads(
           size(), result_, system_.directions(), system_.depth.data(),
-          {system_.flexible_step(), system_.tangential_share(), system_.common() + regular_.common()},
+          {system_.flexible_step(), system_.tangential_share(),
+           system_.common() + regular_.common() - strain_.common()},
           tolerance, iterations, [this](const VectorList& P, VectorList& u) noexcept { displace(P, u); },
           [&](float q) noexcept { return coefficient(friction, q); });
     if constexpr (RegularPart::active)
       if (left.is_astray(system_.norm_of_depths()) && regular_.leave_out()) {
-        system_.sink(regular_.sunk());
+        system_.move(regular_.moved());
         begin_loads(0.f);
         return solve_inside(force, friction, tolerance);
       }
@@ -260,8 +266,10 @@ class ResolvedState {
   void displace(const auto& loads, auto&& u) noexcept {
     system_.displace(loads, u);
     if constexpr (RegularPart::active) regular_.add(system_, loads, u);
+    if constexpr (has_friction && Strain::active) strain_.add(system_, loads, u);
   }
   void begin_loads(float share) noexcept {
+    const SimdVec3<V> moved = each<V>(regular_.moved());
     for (std::size_t i = 0; i < system_.stride(); i += V::size()) {
       const SimdVec3<V> P = last_.load.load(i) + V(share) * last_.load_step.load(i),
                         m = system_.directions().load(i);
@@ -269,7 +277,7 @@ class ResolvedState {
       if constexpr (!has_friction) q.copy_to(&pressure_.q[i]);
       if constexpr (has_friction) {
         result_.load.store(i, P);
-        result_.anchor.store(i, last_.anchor.load(i) - beside_.load(i));
+        result_.anchor.store(i, last_.anchor.load(i) - beside_.load(i) - moved);
         V(&last_.loaded[i]).copy_to(&result_.anchored[i]);
         strain_.limit_per_mu(system_, i, outward_.load(i), q).copy_to(&result_.per_mu[i]);
       }
@@ -315,13 +323,6 @@ class ResolvedState {
     return true;
   }
 
-  void move_anchors(const Pose<S>& before, const Pose<S>& now, const ToolPoints<S>& tool) noexcept {
-    for (const Touching& c : touching_) {
-      const Vec3<S>& x = tool.point(c.point);
-      if (Point& p = points_[c.point]; p.loaded)
-        p.anchor += Vec3<S>(now * x - before * x).template cast<float>();
-    }
-  }
   /// mu of every point: the law's limit of the whole contact over its normal force, of loads q.
   template <class Friction>
   float coefficient(const Friction& friction, float q) noexcept {
@@ -332,9 +333,9 @@ class ResolvedState {
     SimdVec3<V> slope{};
     if constexpr (RegularPart::active) {
       slope = each<V>(regular_.slope(system_, pressure_.q.data(), beside_));
-      regular_.keep(system_, pressure_.q.data());
+      regular_.keep(pressure_.q.data());
     }
-    reaction_.measure(system_, pressure_.q.data(), result_, slope, beside_);
+    reaction_.measure(system_, pressure_.q.data(), result_, slope, beside_, regular_.moved());
     const Vec3<float> v = shift_.v();
     if constexpr (Shift::active)
       if (!regular_.is_left_out())
