@@ -76,7 +76,8 @@ class ResponseLoadDeformation {
     fail("ResponseLoadDeformation", "needs a response field");
   }
   [[nodiscard]] static bool same(const SurfaceLoad<S>& a, const SurfaceLoad<S>& b) noexcept {
-    return a.position == b.position && a.direction == b.direction && a.force == b.force && a.area == b.area;
+    return a.position == b.position && a.direction == b.direction && a.force == b.force && a.area == b.area &&
+           a.by_strain == b.by_strain;
   }
 
   std::shared_ptr<const ResponseField> field_;
