@@ -157,3 +157,22 @@ TEST_CASE("without loads no part of the body is near one") {
   CHECK(near.a == 0);
   CHECK(sum.drawn().contact[0].displacement2() == 0);
 }
+
+TEST_CASE("the field of loads is 0 where the body is fixed, and tells its largest displacement") {
+  detail::LoadField sum(*field(), 4);
+  // Beside the fixed region, where the near field alone would move it.
+  const SurfaceLoad<double> load{V(0.025, -0.0364, 0), V(-0.5, 0.866, 0), V(0, 1, 0), 1e-5};
+  sum.add_up(std::span<const SurfaceLoad<double>>(&load, 1));
+  const std::size_t n = field()->stride();
+  double largest2 = 0;
+  std::size_t fixed = 0;
+  for (std::size_t v = 0; v < n; ++v) {
+    const Vec3<float> u(sum.total()[v], sum.total()[n + v], sum.total()[2 * n + v]);
+    largest2 = (std::max)(largest2, double(u.squaredNorm()));
+    if (field()->is_free()[v] == 1) continue;
+    CHECK(u.isZero(0));
+    ++fixed;
+  }
+  CHECK(fixed >= 10);
+  CHECK_RELATIVE(sum.drawn().contact[0].displacement2(), largest2, 1e-6);  // single precision
+}

@@ -95,7 +95,6 @@ class LoadsBeside {
     for (std::size_t i = size_; i < padded<V>(size_); ++i) {  // what fills up the last register
       x_.set(i, PointSystem::apart());
       for (auto* list : {&m_, &P_}) list->set(i, Vec3<float>::Zero());
-      area_[i] = 1;
     }
     if constexpr (RegularPart::active) {
       for (std::size_t i = 0; i < size_; ++i)
