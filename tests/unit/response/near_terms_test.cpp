@@ -5,6 +5,8 @@
 #include "support/check.hpp"
 #include "support/response_meshes.hpp"
 
+#include <array>
+
 namespace {
 using namespace palpate;
 using V = Vec3<double>;
@@ -92,4 +94,32 @@ TEST_CASE("near terms are bounded beyond two radii and where the disc pulls, and
   }
   // A slope of the drawn field by depth of 1 at most; nothing jumps.
   CHECK(largest < 0.01);
+}
+
+TEST_CASE(
+    "constants of second order: nu = 1/2 as they are, less of some and more of others down to nu = 0.3") {
+  const SecondOrder half = SecondOrder{}.at(0.5), least = SecondOrder{}.at(0.3);
+  const auto of = [](const SecondOrder& k) {
+    return std::array{k.radial,        k.radial_4.shallow,
+                      k.radial_4.deep, k.radial_6.shallow,
+                      k.radial_6.deep, k.slide.shallow,
+                      k.slide.deep,    k.softening,
+                      k.drag,          k.tip,
+                      k.sphere_spread, k.sphere_softening,
+                      k.normal_4.deep, k.normal_6.deep,
+                      k.couple_slid,   k.couple_sunk,
+                      k.lever,         k.rotated,
+                      k.crossed,       k.ease,
+                      k.foreshortened, k.sphere_dipole};
+  };
+  const auto all = of(SecondOrder{});
+  CHECK(of(half) == all);
+  // b = 0.4: (2 nu)^3, seven times 1 - 2.5 b, 1 + 1.3 b, 1 - b, 1 + 1.7 b, 1 - 7 b; all others stay.
+  const std::array factor{0.216, 0., 0., 0., 0., 0., 0., 0., 1.52, 0.6, 1.68, -1.8};
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    CAPTURE(i);
+    const double wanted = (i < factor.size() ? factor[i] : 1) * all[i];
+    CHECK(std::abs(of(least)[i] - wanted) <= 1e-15);  // roundings of numbers below 3
+  }
+  CHECK(of(SecondOrder{}.at(0.1)) == of(least));
 }

@@ -182,6 +182,13 @@ TEST_CASE(
   CHECK_RELATIVE(largest, 9 * soft.norm() / 20, 1e-9);
   CHECK((solver.tick(at(0, 0.06, 0), 1e-3).wrench.force).norm() == 0);
   CHECK(ramp.pass({}, false, 1e-3).force.norm() == 0);
+  // A ramp that is not at its end ends where the tool lifts off.
+  const Wrench<double> pressed{V(0, 10, 0), V::Zero()};
+  (void)ramp.pass(pressed, true, 1e-3);
+  ramp.begin();
+  CHECK(ramp.pass({V(0, 4, 0), V::Zero()}, true, 1e-3).force.y() == 10);
+  CHECK(ramp.pass({}, false, 1e-3).force.norm() == 0);
+  CHECK(ramp.pass(pressed, true, 1e-3).force == pressed.force);
   CHECK_THROWS_AS(WrenchRamp<double>({.time = 0}), SetupError);
 }
 
