@@ -89,7 +89,7 @@ TEST_CASE_TEMPLATE("a leaf's points at once have the sum of the points one by on
   RegionSum<S> one;  // 2 N along x, 3 m above the centre of mass: 6 N m about y
   one.add(Vec3<S>(S(0), S(0), S(3)), Vec3<S>(S(0), S(0), S(3)), Vec3<S>::UnitX(), S(1), S(2), S(1));
   CHECK(one.torque == Vec3<S>(S(0), S(6), S(0)));
-  CHECK(EnergySum<S>{}.weight() == S(0));                          // of no point
   one.add(Vec3<S>(S(0), S(0), S(-1)), Vec3<S>(S(2), S(0), S(0)));  // -2 N m about y: (0,0,-1) x (2,0,0)
   CHECK(one.torque == Vec3<S>(S(0), S(4), S(0)));
+  CHECK(EnergySum<S>{}.weight() == S(0));  // of no point
 }

@@ -199,9 +199,9 @@ TEST_CASE("finite strain: Hertz's pressure has the strain d/R, and nu turns soft
                  kappa = SecondOrder{}.at(nu).drag * (2 - nu) / 8 * beta / (1 + beta * beta),
                  disc = std::numbers::pi * (2 - nu) / (2 * a);
     const Mat3<float>& G = strain.common();
-    CHECK_RELATIVE(G(0, 0), disc * kappa / (1 + kappa), 0.02);
+    CHECK_RELATIVE(G(0, 0), disc * kappa / (1 + kappa), 0.02);  // 1,257 cells
     CHECK(G(2, 2) == G(0, 0));
-    CHECK((G * Vec3<float>::UnitY()).norm() <= 1e-6f * G(0, 0));
+    CHECK((G * Vec3<float>::UnitY()).norm() <= 1e-6f * G(0, 0));  // single precision
     detail::VectorList moved;
     moved.resize(system.stride());
     for (std::size_t i = 0; i < system.stride(); ++i) moved.set(i, Vec3<float>::Zero());
@@ -215,7 +215,7 @@ TEST_CASE("finite strain: Hertz's pressure has the strain d/R, and nu turns soft
     for (std::size_t i = 0; i < system.size(); ++i) beside += strain.beside(system.direction(i), q[i]);
     const Vec3<float> wanted = -load * strain.softening() * Vec3<float>::UnitY() -
                                static_cast<float>(kappa / (1 + kappa)) * load / 200 * across;
-    CHECK((beside - wanted).norm() <= 0.02f * wanted.norm());
+    CHECK((beside - wanted).norm() <= 0.02f * wanted.norm());  // 1,257 cells
     strain.forget();
     CHECK(strain.factor() == 1);
     CHECK(strain.common().isZero(0));
