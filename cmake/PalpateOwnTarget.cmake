@@ -15,7 +15,7 @@ function(palpate_own_target target)
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     # gcc looks for garbage from 128 MB [kB here] on, and finds little: a tenth of the time for a tenth of the
     # memory.
-    target_compile_options(${target} PRIVATE --param=ggc-min-heapsize=400000)
+    target_compile_options(${target} PRIVATE --param=ggc-min-heapsize=300000)
   endif()
   if(PALPATE_SANITIZE)
     target_compile_options(${target} PRIVATE

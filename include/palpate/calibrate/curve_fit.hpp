@@ -6,9 +6,9 @@
 /// Minimises sum w_i (f(p, x_i) - y_i)^2 over low <= p <= high by Levenberg and Marquardt's steps on the
 /// parameters that are not at an active bound. Derivatives by central differences. Source: [more1978].
 
+#include <palpate/core/cholesky.hpp>
 #include <palpate/core/error.hpp>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -124,16 +124,19 @@ template <std::size_t N, class Law>
   // Marquardt's start and factors; at a damping of 1e27 the step is below rounding, and at 1e-12 it is
   // Gauss and Newton's.
   double damping = 1e-3, now = cost(p);
+  detail::SpdSystem<N> system;
   bool settled = false;
   for (int step = 0; step < params.max_steps && !settled; ++step) {
     linearise();
     bool better = false;
     for (int tries = 0; tries < 30 && !better; ++tries) {
-      Vector rhs = -g;
-      for (Eigen::Index k = 0; k < Eigen::Index(N); ++k)
-        if (active(k)) rhs[k] = 0;
-      const Vector move = without_active(damping).ldlt().solve(rhs);
-      Vector next = p + scale.cwiseProduct(move);
+      system.set(without_active(damping));
+      for (std::size_t k = 0; k < N; ++k) system.b[k] = active(Eigen::Index(k)) ? 0 : -g[Eigen::Index(k)];
+      if (!system.solve(N)) {  // undamped it is singular
+        damping *= 10;
+        continue;
+      }
+      Vector next = p + scale.cwiseProduct(Vector(system.b.data()));
       for (Eigen::Index k = 0; k < Eigen::Index(N); ++k)
         next[k] = std::clamp(next[k], low[std::size_t(k)], high[std::size_t(k)]);
       const double then = cost(next);
@@ -181,11 +184,13 @@ template <std::size_t N, class Law>
     B(i, i) = 1;
   }
   const Vector unit = B.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LDLT<Matrix> correlation(unit.asDiagonal() * B * unit.asDiagonal());
+  system.set(Matrix(unit.asDiagonal() * B * unit.asDiagonal()));
   // Central differences carry about ten digits, a normal matrix half of them.
-  if (correlation.vectorD().minCoeff() < 1e-9)
+  if (!system.factor(N) || system.pivot_ratio() < 1e-9)
     return none("the points do not determine all parameters: too many, or the depths are too alike");
-  const Matrix inverse = unit.asDiagonal() * correlation.solve(Matrix::Identity()) * unit.asDiagonal();
+  Matrix correlation;
+  system.invert(correlation);
+  const Matrix inverse = unit.asDiagonal() * correlation * unit.asDiagonal();
   const double freedom = double(m - open), variance = now / freedom, z = 1.959963985;
   // z: of a normal distribution, 97.5 % are below it.
   // Student's t by Cornish and Fisher's expansion; 2 % low at two degrees of freedom.

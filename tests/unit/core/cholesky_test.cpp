@@ -3,6 +3,8 @@
 
 #include "support/check.hpp"
 
+#include <Eigen/Core>
+
 #include <cmath>
 
 TEST_CASE("one factor, several right sides; what is not positive definite is refused") {
@@ -26,6 +28,18 @@ TEST_CASE("one factor, several right sides; what is not positive definite is ref
       CHECK(hilbert.b[r] == again.b[r]);
     }
   }
+  // The same as a matrix of that size; its pivots are 1, 1/12 and 1/180.
+  Eigen::Matrix3d matrix, inverted;
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) matrix(r, c) = 1.0 / (r + c + 1);
+  palpate::detail::SpdSystem<3> whole;
+  whole.set(matrix);
+  REQUIRE(whole.factor(3));
+  CHECK_RELATIVE(whole.pivot_ratio(), 1.0 / 180, 1e-13);  // as above
+  whole.invert(inverted);
+  for (int r = 0; r < 3; ++r)
+    for (int c = 0; c < 3; ++c) CHECK_ABSOLUTE(inverted(r, c), inverse[r][c], 192 * 1e-13);
+
   System indefinite = once;
   indefinite.at(2, 2) = 0;
   CHECK(!indefinite.factor(3));

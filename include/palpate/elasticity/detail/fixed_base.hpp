@@ -4,11 +4,10 @@
 /// @file The fixed region of a body seen from afar: the half-space's field of its reaction, and the rigid
 /// motion that keeps it at rest. Set-up, and at a few positions per tick.
 
+#include <palpate/core/cholesky.hpp>
 #include <palpate/core/error.hpp>
 #include <palpate/elasticity/flat_punch.hpp>
 #include <palpate/geometry/concept.hpp>
-
-#include <Eigen/Cholesky>
 
 #include <algorithm>
 #include <cmath>
@@ -151,11 +150,12 @@ class FixedBase {
       for (int k = 0; k < 6; ++k) J.col(k) = rigid_motion(Screw::Unit(k), sample_[s] / radius_);
       normal += weight_[s] * J.transpose() * J;
     }
-    const Eigen::LDLT<Square> ldlt(normal);
+    SpdSystem<6> system;
+    system.set(normal);
     // Of a disc the smallest pivot is a quarter of the largest; of a line rounding leaves less than 1e-9.
-    if (!(ldlt.vectorD().minCoeff() > 1e-9 * ldlt.vectorD().maxCoeff()))
+    if (!system.factor(6) || !(system.pivot_ratio() > 1e-9))
       fail(name, "the fixed region must not lie within a line");
-    least_squares_ = ldlt.solve(Square::Identity());
+    system.invert(least_squares_);
     for (int k = 0; k < 6; ++k) own_fit_.col(k) = fit([&](const V& y) { return field(y, Screw::Unit(k)); });
   }
 

@@ -23,11 +23,12 @@
 /// The sums are over the triangles around v, with b by K there. Over equal triangles, a quarter of a
 /// quadratic's error is left where it is curved in all directions alike, two fifths where in one.
 
+#include <palpate/core/cholesky.hpp>
 #include <palpate/response/setup/element_mesh.hpp>
 #include <palpate/response/setup/mesh_edges.hpp>
 #include <palpate/response/setup/quadratic_fit.hpp>
 
-#include <Eigen/Cholesky>
+#include <algorithm>
 
 namespace palpate::detail {
 
@@ -147,7 +148,11 @@ class MidEdgeFit {
     mean /= sum;
     M -= sum * mean * mean.transpose();
     M.diagonal().array() += setup::middle_penalty * M.trace();
-    const Vec3d by = M.ldlt().solve(missing);
+    SpdSystem<3> system;
+    system.set(M);
+    std::copy_n(missing.data(), 3, system.b.begin());
+    if (!system.solve(3)) return;  // all of them in one place: they cannot
+    const Vec3d by(system.b.data());
     for (VertexWeight& w : all) {
       const Vec3d y = m.vertices[w.vertex] - half;
       w.weight += by.dot(y - mean) / y.squaredNorm();
