@@ -80,6 +80,7 @@ class FiniteStrain {
     const float root = root_of_strain_ * pressed / load, e = root * root;
     softening_ = k_ * e / std::sqrt(1 + e * e);
     factor_ = 1 / (1 + softening_ * clamp(1 - by_rest / sunk, 0.f, 1.f));
+    if (!system.has_friction()) return;
     const float beta = root * (2.f / 3), kappa = across_ * beta / (1 + beta * beta),
                 a = std::sqrt(9 * load * load / (8 * std::numbers::pi_v<float> * pressed));
     const Vec3<float> m = sum_of(directions) / load;
@@ -112,8 +113,6 @@ class FiniteStrain {
   [[nodiscard]] Vec3<float> beside(const Vec3<float>& m, float q) const noexcept {
     return q * (softening_ * m - stiffened_);
   }
-  /// k e
-  [[nodiscard]] float softening() const noexcept { return softening_; }
 
  private:
   static constexpr float rim = 0.8f;  // cosine of the slope 3/4
