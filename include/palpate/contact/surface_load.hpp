@@ -11,11 +11,13 @@ namespace palpate {
 /// A force on a cell of the surface. A plain value in object coordinates, as ContactState is.
 template <Real S>
 struct SurfaceLoad {
-  Vec3<S> position;                     ///< on the undeformed surface [m]
-  Vec3<S> direction;                    ///< of pressing, into the body, unit
-  Vec3<S> force;                        ///< on the body [N]
-  S area;                               ///< of the cell [m^2]
-  Vec3<S> by_strain = Vec3<S>::Zero();  ///< finite strain: near it force + by_strain acts [N]
+  Vec3<S> position;                       ///< on the undeformed surface [m]
+  Vec3<S> direction;                      ///< of pressing, into the body, unit
+  Vec3<S> force;                          ///< on the body [N]
+  S area;                                 ///< of the cell [m^2]
+  Vec3<S> by_strain = Vec3<S>::Zero();    ///< finite strain: near it force + by_strain acts [N]
+  Vec3<S> tool_point = Vec3<S>::Zero();   ///< of the tool, that presses there [m]
+  Vec3<S> tool_normal = Vec3<S>::Zero();  ///< outward there, unit; 0: the shape may overlap with the tool
 };
 
 /// Whether a body of Young's modulus E [Pa] can have it: position and direction as a pose's, an area of 1e-18
@@ -25,7 +27,8 @@ template <Real S>
   return is_within(load.position, S(1e6)) && is_within(load.direction, S(2)) &&
          is_within(load.direction.squaredNorm() - S(1), S(1e-3)) && is_within(load.area, S(1e12)) &&
          load.area >= S(1e-18) && is_within(load.force, S(1e4) * E * load.area) &&
-         is_within(load.by_strain, S(1e4) * E * load.area);
+         is_within(load.by_strain, S(1e4) * E * load.area) && is_within(load.tool_point, S(1e6)) &&
+         is_within(load.tool_normal, S(2));
 }
 
 }  // namespace palpate

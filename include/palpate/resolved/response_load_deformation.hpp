@@ -14,8 +14,8 @@
 
 namespace palpate {
 
-/// Loads to vertices: the shape of the same body under the same forces that the hand feels. The surface rests
-/// on the tool as far as its points resolve it.
+/// Loads to vertices: the shape of the same body under the same forces that the hand feels. Nothing of it is
+/// inside the tool, as far as the tool is convex and its points resolve it.
 ///
 ///     FixedVector<SurfaceLoad<S>, 256> loads;
 ///     solver.state().loads(loads);                          // servo thread, to hand over
@@ -77,7 +77,7 @@ class ResponseLoadDeformation {
   }
   [[nodiscard]] static bool same(const SurfaceLoad<S>& a, const SurfaceLoad<S>& b) noexcept {
     return a.position == b.position && a.direction == b.direction && a.force == b.force && a.area == b.area &&
-           a.by_strain == b.by_strain;
+           a.by_strain == b.by_strain && a.tool_point == b.tool_point && a.tool_normal == b.tool_normal;
   }
 
   std::shared_ptr<const ResponseField> field_;

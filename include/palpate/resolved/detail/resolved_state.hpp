@@ -54,11 +54,8 @@ class ResolvedState {
         carried_(capacity),
         strain_(body.nu()) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
-    last_.resize(padded);
-    pressure_.resize(padded);
-    result_.resize(padded);
-    reaction_.resize(padded);
-    outward_.resize(padded);
+    last_.resize(padded), pressure_.resize(padded), result_.resize(padded);
+    reaction_.resize(padded), outward_.resize(padded);
   }
 
   void reset() noexcept {
@@ -75,13 +72,15 @@ class ResolvedState {
   template <class List>
   void loads(List& out) const noexcept {
     out.clear();
-    for (std::size_t i = 0; has_contact() && i < size() && !out.full(); ++i) {
-      const Point& p = points_[touching_[inside_[i]].point];
-      if (!p.loaded) continue;
-      const Vec3<float> m = system_.direction(i);
+    for (std::size_t i = 0; const PointContact<S>& at : contacts()) {
+      if (out.full()) return;
+      while (touching_[inside_[i]].point != at.point) ++i;
+      const Vec3<float> m = system_.direction(i), P = points_[at.point].load,
+                        n = touching_[inside_[i]].outward;
       out.push_back({origin_ + system_.foot(i).template cast<S>(), m.template cast<S>(),
-                     per_load_ * p.load.template cast<S>(), static_cast<S>(system_.area(i)),
-                     per_load_ * strain_.beside(m, m.dot(p.load)).template cast<S>()});
+                     per_load_ * P.template cast<S>(), static_cast<S>(system_.area(i)),
+                     per_load_ * strain_.beside(m, m.dot(P)).template cast<S>(), at.position,
+                     n.template cast<S>()});
     }
   }
   /// Loads of other tools on the same body, for the next solve().

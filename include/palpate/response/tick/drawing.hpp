@@ -37,6 +37,43 @@ inline void rest_on_sphere(const DrawnContact& c, const Vec3<double>& at, double
        (std::max)(1 - off * off, 0.0) * inside * tool.m;
 }
 
+/// The patch moves by d and rotates with the tool, as far as the contact is active; beneath a sphere the
+/// surface lies on it. `at`, u, `reach`: as above.
+template <class V>
+void follow_tool(const DrawnContact& c, const SimdVec3<V>& at, float reach, SimdVec3<V>& u) noexcept {
+  const NearField& near = c.near;
+  const V rx = at.x - near.x.x(), ry = at.y - near.x.y(), rz = at.z - near.x.z(),
+          r2 = rx * rx + ry * ry + rz * rz;
+  // A sphere moves what lies within two radii (rest_on_sphere), a patch what lies within one.
+  if (reduce_min(r2) >= 5 * near.a * near.a) return;
+  if (near.is_sphere) {
+    for (std::uint32_t l = 0; l < V::size(); ++l) {
+      if (r2[l] > 4 * near.a * near.a) continue;
+      Vec3<double> v(double(u.x[l]), double(u.y[l]), double(u.z[l]));
+      rest_on_sphere(c, Vec3<double>(double(at.x[l]), double(at.y[l]), double(at.z[l])), double(reach), v);
+      u.x.set(l, static_cast<float>(v[0]));
+      u.y.set(l, static_cast<float>(v[1]));
+      u.z.set(l, static_cast<float>(v[2]));
+    }
+    return;
+  }
+  // Over the last fiftieth of the radius to the field outside: a vertex that comes in moves fast, and does
+  // not jump.
+  constexpr float per_edge = 1 / tick::patch_edge;
+  const Vec3<float> d = c.tool.d.template cast<float>();
+  const V inside = clamp(V(1.f + per_edge - per_edge / near.a * sqrt(r2)), 0.f, 1.f) * near.activation;
+  SimdVec3<V> to{d.x(), d.y(), d.z()};
+  if (c.tool.is_rotated()) {
+    const Mat3<float>& t = near.rotation;
+    to.x += t(0, 0) * rx + t(0, 1) * ry + t(0, 2) * rz;
+    to.y += t(1, 0) * rx + t(1, 1) * ry + t(1, 2) * rz;
+    to.z += t(2, 0) * rx + t(2, 1) * ry + t(2, 2) * rz;
+  }
+  u.x += inside * (to.x - u.x);
+  u.y += inside * (to.y - u.y);
+  u.z += inside * (to.z - u.z);
+}
+
 /// What is drawn: contacts, and their near fields at the mesh's vertices, one contact after the other, by
 /// coordinate.
 template <class Contact>
@@ -203,61 +240,20 @@ class ResponseDrawing {
     const SimdVec3<V> at{from(display.x()), from(display.y()), from(display.z())};
     SimdVec3<V> u = span.total(b1, b2);
     const float reach = this->reach();
-    bool on_patch = false;
     for (auto c : span.close) {
       const auto& k = contacts.contact[c].near;
       const V rx = at.x - k.x.x(), ry = at.y - k.x.y(), rz = at.z - k.x.z(), r2 = rx * rx + ry * ry + rz * rz;
-      const float nearest = reduce_min(r2);
-      if (nearest >= (reach + k.a) * (reach + k.a)) continue;
-      // A sphere moves what lies within two radii (rest_on_sphere), a patch what lies within one.
-      on_patch = on_patch || nearest < 5 * k.a * k.a;
+      if (reduce_min(r2) >= (reach + k.a) * (reach + k.a)) continue;
       const V weight = clamp(V((reach + k.a - sqrt(r2)) * (1 / (tick::reach_fade * reach))), 0.f, 1.f);
       const SimdVec3<V> exact = k(at), drawn = span.own[c](b1, b2);
       u.x += weight * (exact.x - drawn.x);
       u.y += weight * (exact.y - drawn.y);
       u.z += weight * (exact.z - drawn.z);
     }
-    if constexpr (Contact::follows_tool)
-      if (on_patch)
-        for (auto c : span.close) follow(contacts.contact[c], at, reach, u);
+    for (auto c : span.close) follow_tool(contacts.contact[c], at, reach, u);
     for_each_chunk<4>(u.x, [&](auto k, const Simd4& x) PALPATE_INLINE_LAMBDA {
       emit(i + k, SimdVec3<Simd4>{x, chunk<4, k>(u.y), chunk<4, k>(u.z)});
     });
-  }
-
-  // The patch moves by d and rotates with the tool, as far as the contact is active; beneath a sphere the
-  // surface lies on it.
-  template <class V>
-  static void follow(const DrawnContact& c, const SimdVec3<V>& at, float reach, SimdVec3<V>& u) noexcept {
-    const NearField& near = c.near;
-    const V rx = at.x - near.x.x(), ry = at.y - near.x.y(), rz = at.z - near.x.z(),
-            r2 = rx * rx + ry * ry + rz * rz;
-    if (near.is_sphere) {
-      for (std::uint32_t l = 0; l < V::size(); ++l) {
-        if (r2[l] > 4 * near.a * near.a) continue;
-        Vec3<double> v(double(u.x[l]), double(u.y[l]), double(u.z[l]));
-        rest_on_sphere(c, Vec3<double>(double(at.x[l]), double(at.y[l]), double(at.z[l])), double(reach), v);
-        u.x.set(l, static_cast<float>(v[0]));
-        u.y.set(l, static_cast<float>(v[1]));
-        u.z.set(l, static_cast<float>(v[2]));
-      }
-      return;
-    }
-    // Over the last fiftieth of the radius to the field outside: a vertex that comes in moves fast, and does
-    // not jump.
-    constexpr float per_edge = 1 / tick::patch_edge;
-    const Vec3<float> d = c.tool.d.template cast<float>();
-    const V inside = clamp(V(1.f + per_edge - per_edge / near.a * sqrt(r2)), 0.f, 1.f) * near.activation;
-    SimdVec3<V> to{d.x(), d.y(), d.z()};
-    if (c.tool.is_rotated()) {
-      const Mat3<float>& t = near.rotation;
-      to.x += t(0, 0) * rx + t(0, 1) * ry + t(0, 2) * rz;
-      to.y += t(1, 0) * rx + t(1, 1) * ry + t(1, 2) * rz;
-      to.z += t(2, 0) * rx + t(2, 1) * ry + t(2, 2) * rz;
-    }
-    u.x += inside * (to.x - u.x);
-    u.y += inside * (to.y - u.y);
-    u.z += inside * (to.z - u.z);
   }
 
   const ResponseField* field_;

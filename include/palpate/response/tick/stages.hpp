@@ -132,7 +132,6 @@ struct DrawnContact {
   Indenter tool;       ///< x, a: where and how wide the near field is drawn
   Vec3<double> first;  ///< of a sphere: where it touches first [m]
   NearField near;
-  static constexpr bool follows_tool = true;  ///< its patch moves with the tool
 
   [[nodiscard]] double displacement2() const noexcept { return tool.displacement2(); }
 };
