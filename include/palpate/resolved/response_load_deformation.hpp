@@ -77,7 +77,8 @@ class ResponseLoadDeformation {
   }
   [[nodiscard]] static bool same(const SurfaceLoad<S>& a, const SurfaceLoad<S>& b) noexcept {
     return a.position == b.position && a.direction == b.direction && a.force == b.force && a.area == b.area &&
-           a.by_strain == b.by_strain && a.tool_point == b.tool_point && a.tool_normal == b.tool_normal;
+           a.by_strain == b.by_strain && a.shift == b.shift && a.tool_point == b.tool_point &&
+           a.tool_normal == b.tool_normal;
   }
 
   std::shared_ptr<const ResponseField> field_;

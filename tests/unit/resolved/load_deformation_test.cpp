@@ -219,3 +219,32 @@ TEST_CASE("the field of loads is 0 where the body is fixed, and tells its larges
   CHECK(fixed >= 10);
   CHECK_RELATIVE(sum.drawn().contact[0].displacement2(), largest2, 1e-6);  // single precision
 }
+
+TEST_CASE("seen from afar a load acts where its shift says, near it where it is") {
+  detail::LoadField sum(*field(), 1);
+  const std::size_t n = field()->stride();
+  SurfaceLoad<double> load{V(0, axes.y(), 0), -V::UnitY(), V(0.2, -1, 0), 1e-5};
+  using Field = Eigen::ArrayXf;
+  struct Parts {
+    Field regular, near;
+  };
+  const auto parts = [&] {
+    sum.add_up(std::span<const SurfaceLoad<double>>(&load, 1));
+    const auto size = static_cast<Eigen::Index>(3 * n);
+    const Field near = Eigen::Map<const Field>(sum.drawn().own, size);
+    Field regular = Eigen::Map<const Field>(sum.total(), size) - near;
+    for (std::size_t v = 0; v < n; ++v)
+      for (std::size_t k = 0; k < 3; ++k)
+        if (field()->is_free()[v] != 1) regular[static_cast<Eigen::Index>(k * n + v)] = 0;
+    return Parts{regular, near};
+  };
+  const Parts here = parts();
+  load.shift = V(0.003, 0, 0);
+  const Parts shifted = parts();
+  load.position += load.shift, load.shift.setZero();
+  const Parts there = parts();
+  CHECK((shifted.near == here.near).all());
+  const float rounding = 1e-6f * there.near.abs().maxCoeff();  // of a difference of two floats
+  CHECK((shifted.regular - there.regular).abs().maxCoeff() <= rounding);
+  CHECK((shifted.regular - here.regular).abs().maxCoeff() > 100 * rounding);
+}

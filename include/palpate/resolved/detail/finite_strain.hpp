@@ -36,6 +36,13 @@ namespace palpate::detail {
 /// body resists a turn as the linear one: only the sum of the loads counts. m, the mean direction by
 /// load (0 where a tool presses from two sides), a, p: of the last tick.
 ///
+/// Where friction holds the body the load moves with it: to W it acts at x + v,
+///
+///     v = (couple_slid w_t - couple_sunk w_n F_t/F_n)/(1 + (w/2a)^4)
+///
+/// v F_n is a bonded patch's bending couple, whose range w = 2 a is; w: regular displacement, mean by load,
+/// others' loads included.
+///
 /// Where a tool slides, friction takes mu p per area of its surface and length of the body's surface that
 /// passes it. Of a slope g between the tool's normal and m both are larger than seen along m, by
 /// sqrt(1 + g^2) and sqrt(1 + g^2/2), the mean over directions. And p has pressed together what passes, by
@@ -51,6 +58,8 @@ class FiniteStrain {
 
   explicit FiniteStrain(double nu)
       : k_(static_cast<float>(SecondOrder{}.at(nu).sphere_softening)),
+        slid_(static_cast<float>(SecondOrder{}.at(nu).couple_slid)),
+        sunk_(static_cast<float>(SecondOrder{}.at(nu).couple_sunk)),
         across_(static_cast<float>(SecondOrder{}.at(nu).drag * (2 - nu) / 8)),
         compliance_across_(static_cast<float>(std::numbers::pi * (2 - nu) / 2)),
         root_of_strain_(
@@ -59,18 +68,16 @@ class FiniteStrain {
 
   void forget() noexcept {
     softening_ = 0, factor_ = 1;
-    common_.setZero(), stiffened_.setZero();
+    common_.setZero(), stiffened_.setZero(), shift_.setZero();
   }
   /// After a solve for the loads P, q along the directions of pressing: r, displacements along these less the
   /// depths; w, the regular part, and `given`, by others' loads, both of which are not K P [m].
   void measure(const PointSystem& system, const VectorList& P, const float* q, const float* r,
                const VectorList& w, const auto& given) noexcept {
     V loads{}, pressures{}, sunks{}, rests{};
-    SimdVec3<V> directions{}, all{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const V qi(q + i), beside = dot(system.directions().load(i), given.beyond(i));
       loads += qi, pressures += qi * qi / V(system.areas() + i);
-      directions += qi * system.directions().load(i), all += P.load(i);
       sunks += qi * (V(r + i) + V(&system.depth[i]) + beside);
       rests += qi * (dot(system.directions().load(i), w.load(i)) + beside);
     }
@@ -81,13 +88,21 @@ class FiniteStrain {
     softening_ = k_ * e / std::sqrt(1 + e * e);
     factor_ = 1 / (1 + softening_ * clamp(1 - by_rest / sunk, 0.f, 1.f));
     if (!system.has_friction()) return;
+    SimdVec3<V> directions{}, all{}, moved{};
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+      const V qi(q + i);
+      directions += qi * system.directions().load(i), all += P.load(i);
+      moved += qi * (w.load(i) + given.load(i));
+    }
     const float beta = root * (2.f / 3), kappa = across_ * beta / (1 + beta * beta),
                 a = std::sqrt(9 * load * load / (8 * std::numbers::pi_v<float> * pressed));
-    const Vec3<float> m = sum_of(directions) / load;
+    const Vec3<float> m = sum_of(directions) / load, F = sum_of(all) / load, w_mean = sum_of(moved) / load;
     const Mat3<float> across = m.squaredNorm() * Mat3<float>::Identity() - m * m.transpose(),
                       stiffened = kappa / (1 + kappa) * across;
     common_ = compliance_across_ / a * stiffened;
-    stiffened_ = stiffened * sum_of(all) / load;
+    stiffened_ = stiffened * F;
+    const float s = w_mean.squaredNorm() / (4 * a * a);
+    shift_ = across * (slid_ * w_mean - sunk_ * m.dot(w_mean) * F) / (1 + s * s);
   }
   /// u -= G sum_j P_j.
   void add(const PointSystem& system, const VectorList& P, VectorList& u) const noexcept {
@@ -98,6 +113,8 @@ class FiniteStrain {
   }
   /// G [1/m]
   [[nodiscard]] const Mat3<float>& common() const noexcept { return common_; }
+  /// v [m]
+  [[nodiscard]] const Vec3<float>& shift() const noexcept { return shift_; }
   /// Of the depths.
   [[nodiscard]] float factor() const noexcept { return factor_; }
   /// s of points i .. of the tool's unit outward normals, with the normal loads q.
@@ -117,11 +134,12 @@ class FiniteStrain {
  private:
   static constexpr float rim = 0.8f;  // cosine of the slope 3/4
 
-  float k_, across_, compliance_across_;  // kappa (1 + beta^2)/beta; c a
-  float root_of_strain_, strain_across_;  // p/E' = 2 pi (1 - nu) q/A, p/(4 mu) = pi q/A
+  float k_, slid_, sunk_, across_, compliance_across_;  // the latter: kappa (1 + beta^2)/beta; c a
+  float root_of_strain_, strain_across_;                // p/E' = 2 pi (1 - nu) q/A, p/(4 mu) = pi q/A
   float softening_ = 0, factor_ = 1;
   Mat3<float> common_ = Mat3<float>::Zero();     // G
   Vec3<float> stiffened_ = Vec3<float>::Zero();  // what the near field lacks, per normal load
+  Vec3<float> shift_ = Vec3<float>::Zero();
 };
 
 /// Of a body whose response is linear.
@@ -130,6 +148,7 @@ struct LinearStrain {
   explicit LinearStrain(double /*nu*/) {}
   [[nodiscard]] static Mat3<float> common() noexcept { return Mat3<float>::Zero(); }
   [[nodiscard]] static Vec3<float> beside(const Vec3<float>&, float) noexcept { return Vec3<float>::Zero(); }
+  [[nodiscard]] static Vec3<float> shift() noexcept { return Vec3<float>::Zero(); }
   [[nodiscard]] static constexpr float factor() noexcept { return 1; }
   [[nodiscard]] static VectorList::V limit_per_mu(const auto&...) noexcept { return VectorList::V(1.f); }
 };

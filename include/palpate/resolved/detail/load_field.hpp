@@ -19,7 +19,8 @@
 ///     u += s t M,   t = min (n_i.(y_i - y) + e_i)/(n_i.M),   t >= 0,   n_i.M >= 0.3,   y = x + u
 ///
 /// over the loads with y in their cells, r_i^2 = |y - y_i|^2 < A_i. So that nothing jumps where y leaves a
-/// cell, e_i = 0.01 sqrt(A_i) (1/v_i - 1), v_i = 1 - r_i^2/A_i; M has the weights v_i^2, s = max 2 v_i <= 1.
+/// cell, e_i = 0.02 sqrt(A_i) max(0, 1/(4 v_i) - 1), v_i = 1 - r_i^2/A_i; M has the weights v_i^2, s = max 2
+/// v_i <= 1.
 
 #include <palpate/contact/surface_load.hpp>
 #include <palpate/core/simd_math.hpp>
@@ -80,8 +81,8 @@ struct NearLoad {
   template <class V>
   [[nodiscard]] PALPATE_INLINE V inside(const SimdVec3<V>& at, const V& v,
                                         const SimdVec3<V>& M) const noexcept {
-    const float faded = 0.01f * std::sqrt(area);
-    return (n.dot(y) - of(n, at) + faded / (max)(v, V(1e-3f)) - faded) / (max)(of(n, M), V(0.3f));
+    const V e = 0.02f * std::sqrt(area) * (max)(0.25f / (max)(v, V(1e-3f)) - 1.f, V(0.f));
+    return (n.dot(y) - of(n, at) + e) / (max)(of(n, M), V(0.3f));
   }
 
  private:
@@ -197,7 +198,7 @@ class LoadField {
                          f = load.force.template cast<double>() / field_->shear_modulus();
       low = low.cwiseMin(x), high = high.cwiseMax(x);
       widest = (std::max)(widest, std::sqrt(static_cast<float>(load.area)));
-      const LoadPosition position = mesh.locate(x);
+      const LoadPosition position = mesh.locate(x + load.shift.template cast<double>());
       FixedVector<NodeWeight, LoadMesh::most_beneath, Spare::undefined> nodes;
       add_position(mesh, position, nodes);
       const double share = regular_share(position, mean_of(&LoadNode::size, *field_, position));

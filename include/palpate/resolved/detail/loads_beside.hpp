@@ -90,16 +90,15 @@ class LoadsBeside {
       x_.set(size_, (load.position - origin).template cast<float>());
       m_.set(size_, load.direction.template cast<float>());
       P_.set(size_, (load.force / per_load).template cast<float>());
-      area_[size_++] = static_cast<float>(load.area);
+      area_[size_] = static_cast<float>(load.area);
+      if constexpr (RegularPart::active)
+        regular.add_beside(body, (load.position + load.shift).template cast<double>(), triangle_[size_],
+                           P_[size_]);
+      ++size_;
     }
     for (std::size_t i = size_; i < padded<V>(size_); ++i) {  // what fills up the last register
       x_.set(i, PointSystem::apart());
       for (auto* list : {&m_, &P_}) list->set(i, Vec3<float>::Zero());
-    }
-    if constexpr (RegularPart::active) {
-      for (std::size_t i = 0; i < size_; ++i)
-        regular.add_beside(body, (origin + x_[i].template cast<S>()).template cast<double>(), triangle_[i],
-                           P_[i]);
     }
   }
   /// They move the points, whose depths this makes less.

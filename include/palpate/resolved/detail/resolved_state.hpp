@@ -69,18 +69,16 @@ class ResolvedState {
     return {contacts_.begin(), contacts_.size()};
   }
   /// The last tick's loads on the body, as many as the list has room for.
-  template <class List>
-  void loads(List& out) const noexcept {
+  void loads(auto& out) const noexcept {
     out.clear();
     for (std::size_t i = 0; const PointContact<S>& at : contacts()) {
       if (out.full()) return;
       while (touching_[inside_[i]].point != at.point) ++i;
-      const Vec3<float> m = system_.direction(i), P = points_[at.point].load,
-                        n = touching_[inside_[i]].outward;
-      out.push_back({origin_ + system_.foot(i).template cast<S>(), m.template cast<S>(),
-                     per_load_ * P.template cast<S>(), static_cast<S>(system_.area(i)),
-                     per_load_ * strain_.beside(m, m.dot(P)).template cast<S>(), at.position,
-                     n.template cast<S>()});
+      const auto in_S = [](const Vec3<float>& a) -> Vec3<S> { return a.template cast<S>(); };
+      const Vec3<float> m = system_.direction(i), P = points_[at.point].load;
+      out.push_back({origin_ + in_S(system_.foot(i)), in_S(m), per_load_ * in_S(P),
+                     static_cast<S>(system_.area(i)), per_load_ * in_S(strain_.beside(m, m.dot(P))),
+                     in_S(strain_.shift()), at.position, in_S(touching_[inside_[i]].outward)});
     }
   }
   /// Loads of other tools on the same body, for the next solve().
@@ -152,9 +150,7 @@ class ResolvedState {
   }
 
   /// Solves for the loads with the tool at X.
-  template <class Friction>
-  void solve(const Force& force, const Friction& friction, const ToolPoints<S>& tool,
-             const Pose<S>& X) noexcept {
+  void solve(const Force& force, const auto& friction, const ToolPoints<S>& tool, const Pose<S>& X) noexcept {
     const bool first = contacts_.empty();
     contacts_.clear(), residual_ = {};
     const Pose<S> before = std::exchange(pose_, X);
@@ -204,10 +200,15 @@ class ResolvedState {
 
   [[nodiscard]] std::size_t size() const noexcept { return inside_.size(); }
   void forget() noexcept {
-    slides_ = false, strength_ = {};
+    slides_ = false, strength_ = {}, shift_.forget(), beside_.drop();
     if constexpr (has_friction) result_.step = 0, carried_.clear(origin_);
     if constexpr (Strain::active) strain_.forget(), regular_.take_in();
-    shift_.forget(), beside_.drop();
+  }
+  // It was left out in contact: points that w's slope kept out come in from where they are.
+  [[nodiscard]] bool had_regular_part() const noexcept { return !regular_.moved().isZero(0); }
+  // Where a load at `foot` acts, seen from afar.
+  [[nodiscard]] Vec3<double> acts_at(const Vec3<float>& foot) const noexcept {
+    return (origin_ + (foot + strain_.shift()).template cast<S>()).template cast<double>();
   }
   [[nodiscard]] Point& point(std::size_t i) noexcept { return points_[touching_[inside_[i]].point]; }
   void build(const Force& force, const ToolPoints<S>& tool) noexcept {
@@ -221,13 +222,14 @@ class ResolvedState {
       if constexpr (Shift::active)
         system_.depth[i] += touching_[inside_[i]].shifted * system_.direction(i).dot(shift_.v());
       system_.depth[i] = strain_.factor() * system_.depth[i];
+      if constexpr (RegularPart::active) system_.depth[i] -= point(i).held;
       last_.set(i, point(i));
       if constexpr (has_friction && Strain::active) outward_.set(i, touching_[inside_[i]].outward);
     }
     for (std::size_t i = size(); i < system_.stride(); ++i) last_.set(i, {});
     if constexpr (RegularPart::active) {
       regular_.clear();
-      regular_.place_points(force.compliance(), origin_.template cast<double>(), system_.feet(), size(),
+      regular_.place_points(force.compliance(), acts_at(Vec3<float>::Zero()), system_.feet(), size(),
                             [this](std::size_t i) -> std::uint32_t& { return point(i).triangle; });
     }
     if constexpr (Beside::active) beside_.place(force.compliance(), origin_, per_load_, regular_);
@@ -235,8 +237,7 @@ class ResolvedState {
     if (regular_.is_left_out()) system_.move(regular_.moved());
     if constexpr (Beside::active) beside_.move_points(system_, regular_);
   }
-  template <class Friction>
-  void solve_inside(const Force& force, const Friction& friction, float tolerance) noexcept {
+  void solve_inside(const Force& force, const auto& friction, float tolerance) noexcept {
     const int iterations = force.params().iterations;
     Remainder left;
     if constexpr (has_friction && RegularPart::active) regular_.begin_response();
@@ -253,6 +254,8 @@ class ResolvedState {
     if constexpr (RegularPart::active)
       if (left.is_astray(system_.norm_of_depths()) && regular_.leave_out()) {
         system_.move(regular_.moved());
+        for (std::size_t i = 0; had_regular_part() && i < size(); ++i)
+          if (Point& p = point(i); !p.loaded) system_.depth[i] -= p.held = (std::max)(system_.depth[i], 0.f);
         begin_loads(0.f);
         return solve_inside(force, friction, tolerance);
       }
@@ -304,16 +307,15 @@ class ResolvedState {
       depth += at.shifted * m.dot(shift_.v());
       float gap = system_.normal_displacement_at(pressure_.q.data(), foot, m,
                                                  static_cast<float>(tool.area(at.point))) -
-                  strain_.factor() * depth;
+                  strain_.factor() * depth + p.held;
       if constexpr (Beside::active) gap += m.dot(beside_.displacement_at(foot, m) - beside_.v());
       if constexpr (RegularPart::active)
-        gap += regular_.normal_at(force.compliance(),
-                                  (origin_ + foot.template cast<S>()).template cast<double>(), p.triangle, m);
+        gap += regular_.normal_at(force.compliance(), acts_at(foot), p.triangle, m);
       p.sunk = gap + at.depth;
-      if (gap < -tolerance / 10) {
-        inside_.push_back(c);  // sorted below; never beyond the capacity, which is that of touching_
-        more = true;
-      }
+      if (!(gap < -tolerance / 10)) continue;
+      const bool kept_out = had_regular_part() && p.held == 0;
+      if (kept_out) p.held = -gap;
+      if (!kept_out) inside_.push_back(c), more = true;  // sorted below; as many as touching_ at most
     }
     if (!more) return false;
     for (std::size_t i = 0; i < n; ++i)
@@ -323,8 +325,7 @@ class ResolvedState {
   }
 
   /// mu of every point: the law's limit of the whole contact over its normal force, of loads q.
-  template <class Friction>
-  float coefficient(const Friction& friction, float q) noexcept {
+  float coefficient(const auto& friction, float q) noexcept {
     const S normal = static_cast<S>(q) * per_load_;
     return normal > S(0) ? strength_.coefficient(friction, normal) : 0.f;
   }

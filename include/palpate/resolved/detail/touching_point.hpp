@@ -18,6 +18,7 @@ struct PointMemory {
   bool loaded = false;                       ///< in that tick
   bool sticks = false;                       ///< likewise
   float sunk = 0;                            ///< depth less what it lacks to touch [m]
+  float held = 0;                            ///< of the depth: what kept it out when w was left out [m]
   std::uint32_t triangle = ~0u;              ///< of the load mesh
   Vec3<float> load = Vec3<float>::Zero();    ///< P on the body [m^2]
   Vec3<float> u = Vec3<float>::Zero();       ///< displacement [m]
