@@ -146,7 +146,8 @@ void pair(Bytes& in) {
           {.position = bytes.units<double>() * 0.03,
            .direction = n.norm() > 0.01 ? n.normalized() : Vec3<double>::UnitY(),
            .force = op & 128 ? bytes.numbers<double>() : bytes.units<double>() * (op & 64 ? largest : 1),
-           .area = cell});
+           .area = cell,
+           .shift = op & 32 ? bytes.numbers<double>() : Vec3<double>::Zero()});
     }
     state.set_beside(std::span<const SurfaceLoad<double>>(loads));
   });
