@@ -17,7 +17,7 @@ struct SurfaceLoad {
   S area;                                 ///< of the cell [m^2]
   Vec3<S> by_strain = Vec3<S>::Zero();    ///< finite strain: near it force + by_strain acts [N]
   Vec3<S> shift = Vec3<S>::Zero();        ///< finite strain: seen from afar it acts at position + shift [m]
-  Vec3<S> tool_point = Vec3<S>::Zero();   ///< of the tool, that presses there [m]
+  Vec3<S> tool_point = Vec3<S>::Zero();   ///< which of the tool presses there [m]
   Vec3<S> tool_normal = Vec3<S>::Zero();  ///< outward there, unit; 0: the shape may overlap with the tool
 };
 

@@ -138,8 +138,8 @@ template <class V>
 PALPATE_INLINE void follow_tool(const DrawnLoads& loads, const SimdVec3<V>& at, float /*reach*/,
                                 SimdVec3<V>& u) noexcept {
   const SimdVec3<V> r = at - each<V>(loads.near.x);
-  const float most =
-      loads.near.a + 2 * loads.near.cell;  // a cell of the load that presses there, and beside it
+  // A cell's width round a load, and as much again by which that has been moved.
+  const float most = loads.near.a + 2 * loads.near.cell;
   if (reduce_min(dot(r, r)) < most * most) loads.near.rest_on_tool(at, u);
 }
 
