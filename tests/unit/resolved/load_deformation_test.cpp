@@ -106,7 +106,7 @@ TEST_CASE("nothing of the surface is inside a block's face by more than 2 % of t
   solver.state().loads(loads);
   for (SurfaceLoad<double>& load : loads) load.tool_normal.setZero();
   (void)solver.draw({loads.begin(), loads.size()}, drawing.buffer);
-  CHECK(overlap(0) > 0.05 * depth);
+  CHECK(overlap(0) > 0.05 * depth);  // measured: 0.11
   (void)draw(solver, drawing);
   // It sticks, and slides. A vertex that an edge comes to moves fast, and does not jump: 3.0 and 5.6 times as
   // far as the block, 6.5 times where that moves by 1e-6.

@@ -359,7 +359,8 @@ TEST_CASE("seen from afar loads beside act where their shift says") {
     return solver.evaluate(at[0], 1e-3, state).wrench.force.y();
   };
   const double here = moved_by(0), by_one = moved_by(1e-3) - here;
-  // 1 mm changes the force by 0.6 %, in proportion to the shift but for its square: measured 0.4 %.
+  // 1 mm changes the force by 0.6 %, a figure of one digit, in proportion to the shift but for its square:
+  // measured 0.4 %.
   CHECK_RELATIVE(by_one / here, 0.006, 0.1);
   CHECK_RELATIVE(moved_by(-1e-3) - here, -by_one, 0.02);
   CHECK_RELATIVE(moved_by(2e-3) - here, 2 * by_one, 0.02);

@@ -134,7 +134,7 @@ class FiniteStrain {
  private:
   static constexpr float rim = 0.8f;  // cosine of the slope 3/4
 
-  float k_, slid_, sunk_, across_, compliance_across_;  // the latter: kappa (1 + beta^2)/beta; c a
+  float k_, slid_, sunk_, across_, compliance_across_;  // the last two: kappa (1 + beta^2)/beta; c a
   float root_of_strain_, strain_across_;                // p/E' = 2 pi (1 - nu) q/A, p/(4 mu) = pi q/A
   float softening_ = 0, factor_ = 1;
   Mat3<float> common_ = Mat3<float>::Zero();     // G

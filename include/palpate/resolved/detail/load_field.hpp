@@ -123,7 +123,7 @@ struct NearLoads {
     for (const NearLoad& load : loads)
       if (const V v = load.within(at_last); reduce_max(v) > 0)
         least = (min)(least, select(v > V(0.f), load.inside(at_last, v, M), least));
-    u += clamp(2.f * most, 0.f, 1.f) * select(most > V(0.f), (max)(least, V(0.f)), V(0.f)) * M;
+    u += clamp(2.f * most, 0.f, 1.f) * (max)(least, V(0.f)) * M;
   }
 };
 

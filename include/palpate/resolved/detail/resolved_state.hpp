@@ -71,14 +71,14 @@ class ResolvedState {
   /// The last tick's loads on the body, as many as the list has room for.
   void loads(auto& out) const noexcept {
     out.clear();
-    for (std::size_t i = 0; const PointContact<S>& at : contacts()) {
-      if (out.full()) return;
-      while (touching_[inside_[i]].point != at.point) ++i;
+    for (std::size_t i = 0, k = 0; i < size() && k < contacts_.size() && !out.full(); ++i) {
+      const Point& p = points_[touching_[inside_[i]].point];
+      if (!p.loaded) continue;
       const auto in_S = [](const Vec3<float>& a) -> Vec3<S> { return a.template cast<S>(); };
-      const Vec3<float> m = system_.direction(i), P = points_[at.point].load;
-      out.push_back({origin_ + in_S(system_.foot(i)), in_S(m), per_load_ * in_S(P),
-                     static_cast<S>(system_.area(i)), per_load_ * in_S(strain_.beside(m, m.dot(P))),
-                     in_S(strain_.shift()), at.position, in_S(touching_[inside_[i]].outward)});
+      const Vec3<float> m = system_.direction(i);
+      out.push_back({origin_ + in_S(system_.foot(i)), in_S(m), per_load_ * in_S(p.load),
+                     static_cast<S>(system_.area(i)), per_load_ * in_S(strain_.beside(m, m.dot(p.load))),
+                     in_S(strain_.shift()), contacts_[k++].position, in_S(touching_[inside_[i]].outward)});
     }
   }
   /// Loads of other tools on the same body, for the next solve().
