@@ -44,7 +44,10 @@ TEST_CASE("a response that is not positive definite is seen, without friction an
   loads.resize(stride);
   detail::VectorList m;
   m.resize(stride);
-  for (std::size_t i = 0; i < 2; ++i) m.set(i, Vec3<float>::UnitY()), loads.per_mu[i] = 1;
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (auto* list : {&m, &loads.axis}) list->set(i, Vec3<float>::UnitY());
+    loads.per_mu[i] = 1;
+  }
   const auto apply_all = [](const detail::VectorList& P, detail::VectorList& u) {
     for (std::size_t i = 0; i < 2; ++i) u.set(i, response[i] * P[i]);
   };
@@ -67,7 +70,8 @@ TEST_CASE("a plate that stands on a corner: no force beyond a half-space's, wher
                                   {.contact_area = 1e-4}),
        .force = Elastic({.compliance = ResponseCompliance(field)}),
        .friction = CoulombFriction<double>({.mu_static = 0.3, .mu_dynamic = 0.3})});
-  const double hertz = 4. / 3 * E / (1 - nu * nu) * std::sqrt(R) * std::pow(deep, 1.5);
+  const double stiffness = 2 * E / (1 - nu * nu) * std::sqrt(R),  // over the root of the depth
+      hertz = 2. / 3 * stiffness * std::pow(deep, 1.5);
   bool finite = true, said = false;
   double largest = 0, work = 0, spent = 0, jump = 0;
   for (int position = 0; position < 25; ++position) {
@@ -77,15 +81,16 @@ TEST_CASE("a plate that stands on a corner: no force beyond a half-space's, wher
     V before = V::Zero();
     bool near_only = false;
     for (int i = 0; i <= 400; ++i) {
-      const V x(0.01 + 0.02 * (position % 5), 0.01 + 0.02 * (position / 5),
-                size.z() - deep * (1 - std::abs(i - 200) / 200.));
+      const double pressed = deep * (1 - std::abs(i - 200) / 200.);
+      const V x(0.01 + 0.02 * (position % 5), 0.01 + 0.02 * (position / 5), size.z() - pressed);
       const auto felt = solver.tick({X.rotation, x}, 1e-3);
       const V force = felt.wrench.force;
       finite &= is_finite(force) && is_finite(felt.wrench.torque);
       largest = (std::max)(largest, force.norm());
       const bool was = std::exchange(near_only, has(felt.status, Status::near_field_only));
       said |= near_only;
-      if (near_only && !was && i > 5) jump = (std::max)(jump, (force - before).norm() / before.norm());
+      if (near_only && !was)  // over what a tick's depth does to a ball on a half-space
+        jump = (std::max)(jump, (force - before).norm() / (stiffness * std::sqrt(pressed) * deep / 200));
       if (i > 0) {
         const double done = (force + before).z() / 2 * (i <= 200 ? -1 : 1) * deep / 200;
         work += done, spent += std::abs(done);
@@ -96,8 +101,8 @@ TEST_CASE("a plate that stands on a corner: no force beyond a half-space's, wher
   CHECK(finite);
   CHECK(largest <= hertz);  // measured: 0.95 of it
   CHECK(said);
-  // Measured: 0.55; were it not as deep as in the tick before, 10; were points pressed at once that the plate's
-  // slope had kept out, 2.1.
+  // Measured: 0.75; were it not as deep as in the tick before, 3.0; were points pressed at once that the
+  // plate's slope had kept out, 1.7.
   CHECK(jump <= 1);
   CHECK(work <= 0);
 }

@@ -93,11 +93,24 @@ TEST_CASE(
     solver.state().loads(loads);
     const auto felt = solver.state().points();
     REQUIRE(loads.size() == felt.size());
+    // Tractions are what is beside the pressure along the ball's normal, its share of finite_strain.hpp, and
+    // none of that is left of all loads.
+    const auto slope = [&](std::size_t i) {
+      const V m = loads[i].direction, normal = loads[i].tool_normal;
+      return V((std::min)(2 * (1 - 2 * nu), 1.) * (normal / normal.dot(m) - m));
+    };
+    V pushed_aside = V::Zero();
+    double normal_force = 0;
+    for (std::size_t i = 0; i < loads.size(); ++i) {
+      const double q = loads[i].force.dot(loads[i].direction);
+      pushed_aside += q * slope(i), normal_force += q;
+    }
     double steepest = 1;
     for (std::size_t i = 0; i < felt.size(); ++i) {
       const auto& point = felt[i];
       const double q = loads[i].force.dot(loads[i].direction),
-                   t = (loads[i].force - q * loads[i].direction).norm(),
+                   t = (loads[i].force - q * (loads[i].direction + slope(i) - pushed_aside / normal_force))
+                           .norm(),
                    cosine = (V(x, height, 0) - point.position).normalized().dot(point.normal);
       steepest = (std::min)(steepest, cosine);
       // sqrt(1 + g^2) of area, sqrt(1 + g^2/2) of stretch, g: slope; the surface is pressed together by
@@ -135,6 +148,49 @@ TEST_CASE("the limit of tractions grows with the slope up to a rim's, and halves
   CHECK(limit(1, 1) == 0.5f);
   CHECK(detail::LinearStrain(nu).limit_per_mu(system, 0, detail::each<Simd>(Vec3<float>::UnitX()),
                                               Simd(1))[0] == 1);
+}
+
+TEST_CASE(
+    "cones lean with the tool's normal, up to a rim's slope; no load aside is left of all, none at nu 1/2") {
+  for (const double nu : {0.1, 0.4, 0.5}) {
+    CAPTURE(nu);
+    detail::PointSystem system(8, static_cast<float>(1 - 2 * nu), true);
+    system.begin_tick();
+    system.clear();
+    system.touch(1e-3f, 1e-9f, Vec3<float>::Zero(), -1e-9f * Vec3<float>::UnitY());
+    detail::VectorList outward, P, axis;
+    for (auto* list : {&outward, &P, &axis}) list->resize(8);
+    const Vec3<float> normals[] = {{0, -1, 0}, {0.28f, -0.96f, 0}, {0, -0.6f, -0.8f}, {0, 0, 1}, {0, 0, 0}};
+    const float loads[] = {4, 2, 1, 1, 0};
+    for (std::size_t i = 0; i < 5; ++i) {
+      system.add(1e-3f * Vec3<float>(float(i), 0, 0), -Vec3<float>::UnitY(), 1e-3f, 1e-6f);
+      outward.set(i, normals[i]);
+      P.set(i, Vec3<float>(0.3f, -loads[i], 0.1f));
+    }
+    system.build();
+    detail::FiniteStrain(nu).set_axes(system, outward, P, axis);
+    const double lean = nu < 0.25 ? 1 : 2 * (1 - 2 * nu);
+    const V slopes[] = {{0, 0, 0}, {0.28 / 0.96, 0, 0}, {0, 0, -0.75}, {0, 0, 0.75}, {0, 0, 0}};
+    const V mean(2 * (0.28 / 0.96) / 8, 0, 0);
+    for (std::size_t i = 0; i < 5; ++i)  // rounding of float
+      CHECK((axis[i].cast<double>() - (lean * (slopes[i] - mean) - V::UnitY())).norm() <= 1e-6);
+    detail::LinearStrain(nu).set_axes(system, outward, P, axis);
+    CHECK(axis[1] == system.direction(1));
+  }
+}
+
+TEST_CASE("a ball pushed aside on rubber of nu = 0.3: finite elements' force within 2 %") {
+  // 3 mm deep and 0.5 mm aside, mu = 0.3: 3.671 N (bench/truth/data/contact, ball_slid_nu3). Measured: 0.4 %
+  // more; 4.0 % less where cones are about m.
+  const V size(0.1, 0.1, 0.1);
+  const auto field = std::make_shared<const ResponseField>(block_field(size, 1e6, 0.3, 400));
+  auto solver =
+      on_block(size, ResponseCompliance(field),
+               CoulombFriction<double>({.mu_static = 0.3, .mu_dynamic = 0.3}), cap_samples(R, 0.012, 0.0018));
+  for (int i = 1; i <= 100; ++i) (void)solver.tick(at(0, 0.1 - 3e-5 * i));
+  const double before = solver.tick(at(0, 0.097)).wrench.force.x();
+  for (int i = 1; i <= 50; ++i) (void)solver.tick(at(1e-5 * i, 0.097));
+  CHECK_RELATIVE(before - solver.tick(at(0.0005, 0.097)).wrench.force.x(), 3.671, 0.02);
 }
 
 TEST_CASE("a ball that slides round in circles hardly needs an iteration: the last tick's change goes on") {

@@ -3,12 +3,12 @@
 
 /// @file The problem of a contact resolved at its points, with friction:
 ///
-///     q >= 0,  m.u - d >= 0,  one of them 0;  u = A P, q = m.P, t = P - q m           Signorini
+///     q >= 0,  m.u - d >= 0,  one of them 0;  u = A P, q = m.P, t = P - q c           Signorini
 ///     |t| <= mu s q;  sticks: u_t = a;  slips: t = mu s q along a - u_t                 Coulomb
 ///
-/// s: 1, or of finite strain (finite_strain.hpp). By gradients of all loads at once, projected onto the
-/// cones: where a tool slides the cones hold every point, and conjugate gradients would begin anew each time.
-/// A step is that of a simpler body,
+/// s, c: 1 and m, or of finite strain (finite_strain.hpp); c.m = 1. By gradients of all loads at once,
+/// projected onto the cones: where a tool slides the cones hold every point, and conjugate gradients would
+/// begin anew each time. A step is that of a simpler body,
 ///
 ///     du_i = D_i dP_i + z,   z = C sum_j dP_j
 ///
@@ -39,13 +39,14 @@ inline constexpr float rounding2 = 4e-12f;
 /// changes.
 struct FrictionLists : LoadLists {
   VectorList anchor, load_step, u_step;
+  VectorList axis;              ///< of the cones, c
   AlignedList<float> anchored;  ///< 1 where the point has an anchor; 0 where it is new: no tractions
   AlignedList<float> per_mu;    ///< limit of the tractions over mu q, s
   float step = 0;               ///< the last tick's last; 0: none [1/m]
   float mu = 0;                 ///< of the result
   void resize(std::size_t size) {
     LoadLists::resize(size);
-    for (auto* list : {&anchor, &load_step, &u_step}) list->resize(size);
+    for (auto* list : {&anchor, &load_step, &u_step, &axis}) list->resize(size);
     for (auto* list : {&anchored, &per_mu}) list->resize(size);
   }
 };
@@ -73,14 +74,17 @@ struct LoadModel {
 /// Points of a solve, a register of them, with all displacements z more than they are.
 struct LoadedPoints {
   using V = VectorList::V;
-  SimdVec3<V> m, t, slip;           // direction of pressing; tractions; of the surface over its anchor
+  SimdVec3<V> m, c, t, slip;        // of pressing; axis; tractions; surface over anchor
   V q, limit_per_q, anchored, gap;  // normal load; mu s; FrictionLists::anchored; m.u - d
 
   PALPATE_INLINE LoadedPoints(const FrictionLists& lists, const VectorList& directions, const float* d,
                               std::size_t i, const SimdVec3<V>& z) noexcept
-      : m(directions.load(i)), limit_per_q(V(lists.mu) * V(&lists.per_mu[i])), anchored(&lists.anchored[i]) {
+      : m(directions.load(i)),
+        c(lists.axis.load(i)),
+        limit_per_q(V(lists.mu) * V(&lists.per_mu[i])),
+        anchored(&lists.anchored[i]) {
     const SimdVec3<V> P = lists.load.load(i), u = lists.u.load(i);
-    q = dot(m, P), t = P - q * m;
+    q = dot(m, P), t = P - q * c;
     // z last: it may be less than the last digit of u.
     gap = (dot(m, u) - V(d + i)) + dot(m, z);
     slip = anchored * (across(m, u - lists.anchor.load(i)) + across(m, z));
@@ -93,13 +97,13 @@ struct StepSlope {
   SimdVec3<V> m, e, by_m, by_e;
   V all;
 
-  /// They yield by `normal` along m and by `tangential` across it. Those that slip (1, else 0), along e, with
-  /// `per_q` of their normal load, yield along e by that alone.
-  PALPATE_INLINE StepSlope(const SimdVec3<V>& m_, const SimdVec3<V>& e_, const V& normal, const V& tangential,
-                           const V& slips, const V& per_q) noexcept
+  /// They yield by `normal` along c to what is along m, and by `tangential` across m. Those that slip (1,
+  /// else 0), along e, with `per_q` of their normal load, yield along e by that alone.
+  PALPATE_INLINE StepSlope(const SimdVec3<V>& m_, const SimdVec3<V>& c, const SimdVec3<V>& e_,
+                           const V& normal, const V& tangential, const V& slips, const V& per_q) noexcept
       : m(m_),
         e(e_),
-        by_m(normal * (m + (slips * per_q) * e) - tangential * m),
+        by_m(normal * (c + (slips * per_q) * e) - tangential * m),
         by_e((slips * tangential) * e),
         all(tangential) {}
   [[nodiscard]] PALPATE_INLINE SimdVec3<V> operator*(const SimdVec3<V>& z) const noexcept {
@@ -150,10 +154,10 @@ class FrictionSteps {
       total += (max)(dot(m_.load(i), lists_.load.load(i)), V(0.f));
     lists_.mu = coefficient(reduce(total));
     for (std::size_t i = 0; i < n_; i += V::size()) {
-      const SimdVec3<V> m = m_.load(i), P = lists_.load.load(i);
-      const V q = dot(m, P), next = (max)(q, V(0.f));
-      const SimdVec3<V> t = V(&lists_.anchored[i]) * (P - q * m);
-      lists_.load.store(i, next * m + within(V(lists_.mu) * V(&lists_.per_mu[i]) * next, dot(t, t)) * t);
+      const SimdVec3<V> c = lists_.axis.load(i), P = lists_.load.load(i);
+      const V q = dot(m_.load(i), P), next = (max)(q, V(0.f));
+      const SimdVec3<V> t = V(&lists_.anchored[i]) * (P - q * c);
+      lists_.load.store(i, next * c + within(V(lists_.mu) * V(&lists_.per_mu[i]) * next, dot(t, t)) * t);
     }
     if (lists_.step == 0) lists_.step = model_.step;
   }
@@ -251,7 +255,7 @@ class FrictionSteps {
       const V limit = p.limit_per_q * p.q, t2 = dot(p.t, p.t), loaded = select(p.q > zero, one, zero),
               slips = select(t2 < V(slips_from) * limit * limit, zero,
                              select(dot(p.slip, p.t) < zero, one, zero));
-      const StepSlope slope(p.m, inverse_sqrt((max)(t2, V(tiny))) * p.t, loaded * normal,
+      const StepSlope slope(p.m, p.c, inverse_sqrt((max)(t2, V(tiny))) * p.t, loaded * normal,
                             loaded * p.anchored * tangential, slips, p.limit_per_q);
       slopes += slope;
       steps -= slope * (p.gap * p.m + p.slip);
@@ -270,11 +274,11 @@ class FrictionSteps {
       const V dq = (max)(-(normal * p.gap), -p.q), next = p.q + dq;
       const SimdVec3<V> t = p.t - tangential * p.slip;
       const V t2 = dot(t, t), bound = p.limit_per_q * next, share = within(bound, t2);
-      const SimdVec3<V> dP = dq * p.m + (share - one) * p.t - (share * tangential) * p.slip;
+      const SimdVec3<V> dP = dq * p.c + (share - one) * p.t - (share * tangential) * p.slip;
       lists_.load_step.store(i, dP);
       total += next, sum += dP;
       if (!has_common_) continue;
-      slopes += StepSlope(p.m, inverse_sqrt((max)(t2, V(tiny))) * t, select(next > zero, normal, zero),
+      slopes += StepSlope(p.m, p.c, inverse_sqrt((max)(t2, V(tiny))) * t, select(next > zero, normal, zero),
                           select(next > zero, share * p.anchored * tangential, zero),
                           select(share < one, one, zero), p.limit_per_q);
     }

@@ -41,7 +41,7 @@ class Reaction {
       const V qi(q + i);
       V slips = one;
       if constexpr (has_friction) {
-        const SimdVec3<V> t = across(m, P), u = result.u.load(i);
+        const SimdVec3<V> t = P - qi * result.axis.load(i), u = result.u.load(i);
         const V limit = V(result.mu) * V(&result.per_mu[i]) * qi, limit2 = limit * limit, held2 = dot(t, t);
         const auto sticks = held2 < V(slips_from) * limit2;
         slips = select(sticks, held2 / (max)(limit2, tiny), one);

@@ -193,7 +193,6 @@ class ResolvedState {
   using Beside = std::conditional_t<(max_beside > 0), LoadsBeside<S>, NoLoadsBeside>;
   static constexpr float near = 0.05f;   // of the depth; with less gap points are solved for at once
   static constexpr int most_rounds = 3;  // in which points may come in within a tick
-
   using V = VectorList::V;
   using Point = PointMemory;
   using Touching = TouchingPoint;
@@ -284,6 +283,7 @@ class ResolvedState {
         strain_.limit_per_mu(system_, i, outward_.load(i), q).copy_to(&result_.per_mu[i]);
       }
     }
+    if constexpr (has_friction) strain_.set_axes(system_, outward_, result_.load, result_.axis);
   }
 
   /// Takes in points that the surface has not given way to. False where there are none, and not `again`.
