@@ -47,17 +47,17 @@ struct Solved {
 /// From nothing to loads of which every third sticks, every third slips, and every third touches no more.
 /// `lean`: of the cones' axes, over m.
 Solved solve(const SlenderPart& part, const Mat3<float>& taken_for, float lean = 0) {
-  detail::FrictionLists lists;
-  lists.resize(n);
-  VectorList wanted, u;
-  for (auto* list : {&wanted, &u}) list->resize(n);
+  VectorList wanted, u, axes;
+  for (auto* list : {&wanted, &u, &axes}) list->resize(n);
   const auto across = [&](std::size_t i) { return V(part.m[i].cross(V::UnitX()).normalized()); };
   for (std::size_t i = 0; i < n; ++i) {
     const float q = i % 3 == 2 ? 0 : 1 + 0.1f * float(i);
-    lists.axis.set(i, part.m[i] + lean * part.m[i].cross(V::UnitZ()));
-    wanted.set(i, q * (lists.axis[i] + (i % 3 == 1 ? mu : 0.5f * mu) * across(i)));
+    axes.set(i, part.m[i] + lean * part.m[i].cross(V::UnitZ()));
+    wanted.set(i, q * (axes[i] + (i % 3 == 1 ? mu : 0.5f * mu) * across(i)));
   }
   part(wanted, u);
+  detail::FrictionLists lists;
+  lists.resize(n);
   AlignedList<float> d;
   d.resize(AlignedList<float>::padded(n));
   for (std::size_t i = 0; i < n; ++i) {
@@ -67,7 +67,7 @@ Solved solve(const SlenderPart& part, const Mat3<float>& taken_for, float lean =
     lists.anchored[i] = lists.per_mu[i] = 1;
   }
   Solved out{.left = detail::solve_loads(
-                 n, lists, part.m, d.data(), {1, tangential, taken_for}, 1e-3f, 50,
+                 n, lists, part.m, axes, d.data(), {1, tangential, taken_for}, 1e-3f, 50,
                  [&](const VectorList& P, VectorList& moved) { part(P, moved); }, [](float) { return mu; })};
   for (std::size_t i = 0; i < n; ++i) out.off = (std::max)(out.off, (lists.load[i] - wanted[i]).norm());
   return out;
@@ -85,7 +85,7 @@ TEST_CASE("loads with friction: what a slender part does as a whole costs no ite
     CHECK(solved.off <= solved.left.tolerance);             // over the points' own compliance, 1
     const Solved leaning = solve(part, part.common, 0.2f);  // 2/3 of the cone's slope
     CHECK(leaning.left.norm <= leaning.left.tolerance);
-    CHECK(leaning.left.iterations <= 6);
+    CHECK(leaning.left.iterations <= 6);  // measured: 3
     CHECK(leaning.off <= leaning.left.tolerance);
     // What it is taken for need not be what it is. Measured: 5, 11, 14 iterations.
     const Solved roughly = solve(part, 0.7f * part.common);

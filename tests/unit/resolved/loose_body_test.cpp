@@ -44,16 +44,14 @@ TEST_CASE("a response that is not positive definite is seen, without friction an
   loads.resize(stride);
   detail::VectorList m;
   m.resize(stride);
-  for (std::size_t i = 0; i < 2; ++i) {
-    for (auto* list : {&m, &loads.axis}) list->set(i, Vec3<float>::UnitY());
-    loads.per_mu[i] = 1;
-  }
+  for (std::size_t i = 0; i < 2; ++i) m.set(i, Vec3<float>::UnitY()), loads.per_mu[i] = 1;
   const auto apply_all = [](const detail::VectorList& P, detail::VectorList& u) {
     for (std::size_t i = 0; i < 2; ++i) u.set(i, response[i] * P[i]);
   };
   const auto mu = [](float) { return 0.3f; };
   const Mat3<float> none = Mat3<float>::Zero();
-  CHECK_FALSE(detail::solve_loads(2, loads, m, d.data(), {1, 1, none}, 1e-7f, 50, apply_all, mu).is_convex);
+  CHECK_FALSE(
+      detail::solve_loads(2, loads, m, m, d.data(), {1, 1, none}, 1e-7f, 50, apply_all, mu).is_convex);
 }
 
 TEST_CASE("a plate that stands on a corner: no force beyond a half-space's, wherever it is pressed") {
@@ -87,10 +85,11 @@ TEST_CASE("a plate that stands on a corner: no force beyond a half-space's, wher
       const V force = felt.wrench.force;
       finite &= is_finite(force) && is_finite(felt.wrench.torque);
       largest = (std::max)(largest, force.norm());
-      const bool was = std::exchange(near_only, has(felt.status, Status::near_field_only));
+      near_only |= has(felt.status, Status::near_field_only);
       said |= near_only;
-      if (near_only && !was)  // over what a tick's depth does to a ball on a half-space
-        jump = (std::max)(jump, (force - before).norm() / (stiffness * std::sqrt(pressed) * deep / 200));
+      if (near_only)  // over what a tick's depth does to a ball on a half-space, from a quarter of `deep` on
+        jump = (std::max)(jump, (force - before).norm() /
+                                    (stiffness * std::sqrt((std::max)(pressed, deep / 4)) * deep / 200));
       if (i > 0) {
         const double done = (force + before).z() / 2 * (i <= 200 ? -1 : 1) * deep / 200;
         work += done, spent += std::abs(done);
@@ -101,8 +100,9 @@ TEST_CASE("a plate that stands on a corner: no force beyond a half-space's, wher
   CHECK(finite);
   CHECK(largest <= hertz);  // measured: 0.95 of it
   CHECK(said);
-  // Measured: 0.75; were it not as deep as in the tick before, 3.0; were points pressed at once that the
-  // plate's slope had kept out, 1.7.
-  CHECK(jump <= 1);
+  // Measured: 1.07, by more points than a ball's, for the plate bends. 1.4 were w's slope lost among points
+  // that press or points held only when they are looked at, 1.6 were those pressed at once that it kept out,
+  // 2.2 were the contact not where the last tick had moved it.
+  CHECK(jump <= 1.25);
   CHECK(work <= 0);
 }

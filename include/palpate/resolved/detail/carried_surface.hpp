@@ -69,7 +69,7 @@ class CarriedSurface {
   }
 
   /// At least |s| anywhere [m].
-  [[nodiscard]] S most() const noexcept { return static_cast<S>(most_); }
+  [[nodiscard]] float most() const noexcept { return most_; }
   /// A leaf of the tool's points over the surface as it lay before.
   [[nodiscard]] PointBatch<S> before(const PointBatch<S>& now) const noexcept {
     return less(now, Vec3<S>(at({now.x[0], now.y[0], now.z[0]}).template cast<S>()));
@@ -101,6 +101,8 @@ class CarriedSurface {
 /// Without friction: nowhere.
 struct StillSurface {
   explicit StillSurface(std::size_t /*capacity*/) {}
+  [[nodiscard]] static int most() noexcept { return 0; }
+  [[nodiscard]] static const auto& before(const auto& x) noexcept { return x; }
 };
 
 }  // namespace palpate::detail

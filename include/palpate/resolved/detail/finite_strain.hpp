@@ -54,21 +54,21 @@ namespace palpate::detail {
 ///
 /// What is steeper is a tool's rim, round which nothing slides; 3/4 is chosen on finite elements.
 ///
-/// Where nothing slips past it the tool's pressure acts along its normal. Of the part across m, q g, the
-/// stress along the surface, which has turned with it, holds the more the less compressible the body: of
-/// -p along m and across it, as where nu = 1/2, all. So what a point bears without friction, its cone's axis,
-/// is
+/// What of the tool is slanted presses along its own normal. Of the part of that across m, q g, the stress
+/// along the surface holds some, for the surface has turned with the tool: all where it is as large as the
+/// pressure, as at nu = 1/2. So what a point bears without friction, the axis of its cone, is
 ///
 ///     c = m + lean (g - mean of g by load),   lean = min(2 (1 - 2 nu), 1)
 ///
-/// 0 at nu = 1/2, as finite elements show, and chosen on them at nu = 0.3, where they want 0.7 to 1. Without
-/// the mean a tool that slides, on whose sides the pressures balance, would be pushed aside.
+/// chosen on finite elements: these want 0.7 to 1 at nu = 0.3, and 0 at 1/2. Without the mean a tool that
+/// slides would be pushed aside, though the pressures on its sides balance.
 class FiniteStrain {
  public:
   using V = VectorList::V;
   static constexpr bool active = true;
 
-  explicit FiniteStrain(double nu)
+  /// `points` at most whose cones lean: 0 without friction.
+  FiniteStrain(double nu, std::size_t points)
       : k_(static_cast<float>(SecondOrder{}.at(nu).sphere_softening)),
         slid_(static_cast<float>(SecondOrder{}.at(nu).couple_slid)),
         sunk_(static_cast<float>(SecondOrder{}.at(nu).couple_sunk)),
@@ -77,7 +77,9 @@ class FiniteStrain {
         root_of_strain_(
             static_cast<float>(std::numbers::pi / 2 * (4. / 3) * 2 * std::numbers::pi * (1 - nu))),
         strain_across_(static_cast<float>(-(1 - 2 * nu) * std::numbers::pi)),
-        lean_(static_cast<float>((std::min)(2 * (1 - 2 * nu), 1.))) {}
+        lean_(static_cast<float>((std::min)(2 * (1 - 2 * nu), 1.))) {
+    axes_.resize(AlignedList<float>::padded(points));
+  }
 
   void forget() noexcept {
     softening_ = 0, factor_ = 1;
@@ -138,26 +140,27 @@ class FiniteStrain {
             strain = (max)(V(strain_across_) * q / V(system.areas() + i), V(-0.5f));
     return area * stretch * (V(1.f) + strain);
   }
-  /// c of all points, with the loads P.
-  void set_axes(const PointSystem& system, const VectorList& outward, const VectorList& P,
-                VectorList& axis) const noexcept {
-    SimdVec3<V> leans{};
+  /// Cones of all points, by the tool's unit outward normals, with the loads P.
+  void lean(const PointSystem& system, const VectorList& outward, const VectorList& P) noexcept {
+    SimdVec3<V> sum{};
     V loads{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
-      const SimdVec3<V> m = system.directions().load(i), o = outward.load(i), g = across(m, o);
-      const V q = (max)(dot(m, P.load(i)), V(0.f)), along = dot(o, m), g2 = (max)(dot(g, g), V(tiny)),
-              per_normal =
-                  select(along < V(rim), V(rim_slope) * inverse_sqrt(g2), V(1.f) / (max)(along, V(rim)));
-      const SimdVec3<V> lean = (V(lean_) * per_normal) * g;
-      axis.store(i, lean);
-      leans += q * lean, loads += q;
+      const SimdVec3<V> m = system.directions().load(i), o = outward.load(i);
+      const SimdVec3<V> slope = V(1.f) / (max)(dot(o, m), V(rim)) * across(m, o);
+      const V q = (max)(dot(m, P.load(i)), V(0.f)),
+              most = V(rim_slope) * inverse_sqrt((max)(dot(slope, slope), V(tiny)));
+      const SimdVec3<V> g = (min)(most, V(1.f)) * slope;
+      axes_.store(i, g);
+      sum += q * g, loads += q;
     }
-    const SimdVec3<V> mean = each<V>(sum_of(leans) / (std::max)(reduce(loads), tiny));
+    const SimdVec3<V> mean = each<V>(sum_of(sum) / (std::max)(reduce(loads), tiny));
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const SimdVec3<V> m = system.directions().load(i);
-      axis.store(i, m + across(m, axis.load(i) - mean));
+      axes_.store(i, m + V(lean_) * across(m, axes_.load(i) - mean));
     }
   }
+  /// c, after lean().
+  [[nodiscard]] const VectorList& axes(const PointSystem& /*system*/) const noexcept { return axes_; }
   /// What the near field of a load is drawn with beside it, q along m: k e more, and of all loads across m
   /// kappa/(1 + kappa) less, shared as q is [m^2].
   [[nodiscard]] Vec3<float> beside(const Vec3<float>& m, float q) const noexcept {
@@ -171,6 +174,7 @@ class FiniteStrain {
   float k_, slid_, sunk_, across_, compliance_across_;  // the last two: kappa (1 + beta^2)/beta; c a
   float root_of_strain_, strain_across_;                // p/E' = 2 pi (1 - nu) q/A, p/(4 mu) = pi q/A
   float lean_;
+  VectorList axes_;
   float softening_ = 0, factor_ = 1;
   Mat3<float> common_ = Mat3<float>::Zero();     // G
   Vec3<float> stiffened_ = Vec3<float>::Zero();  // what the near field lacks, per normal load
@@ -180,15 +184,14 @@ class FiniteStrain {
 /// Of a body whose response is linear.
 struct LinearStrain {
   static constexpr bool active = false;
-  explicit LinearStrain(double /*nu*/) {}
+  LinearStrain(double /*nu*/, std::size_t /*points*/) {}
   [[nodiscard]] static Mat3<float> common() noexcept { return Mat3<float>::Zero(); }
   [[nodiscard]] static Vec3<float> beside(const Vec3<float>&, float) noexcept { return Vec3<float>::Zero(); }
   [[nodiscard]] static Vec3<float> shift() noexcept { return Vec3<float>::Zero(); }
   [[nodiscard]] static constexpr float factor() noexcept { return 1; }
   [[nodiscard]] static VectorList::V limit_per_mu(const auto&...) noexcept { return VectorList::V(1.f); }
-  static void set_axes(const PointSystem& system, const auto&, const auto&, VectorList& axis) noexcept {
-    for (std::size_t i = 0; i < system.stride(); i += VectorList::V::size())
-      axis.store(i, system.directions().load(i));
+  [[nodiscard]] static const VectorList& axes(const PointSystem& system) noexcept {
+    return system.directions();
   }
 };
 

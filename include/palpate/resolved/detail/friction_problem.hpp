@@ -39,14 +39,13 @@ inline constexpr float rounding2 = 4e-12f;
 /// changes.
 struct FrictionLists : LoadLists {
   VectorList anchor, load_step, u_step;
-  VectorList axis;              ///< of the cones, c
   AlignedList<float> anchored;  ///< 1 where the point has an anchor; 0 where it is new: no tractions
   AlignedList<float> per_mu;    ///< limit of the tractions over mu q, s
   float step = 0;               ///< the last tick's last; 0: none [1/m]
   float mu = 0;                 ///< of the result
   void resize(std::size_t size) {
     LoadLists::resize(size);
-    for (auto* list : {&anchor, &load_step, &u_step, &axis}) list->resize(size);
+    for (auto* list : {&anchor, &load_step, &u_step}) list->resize(size);
     for (auto* list : {&anchored, &per_mu}) list->resize(size);
   }
 };
@@ -77,10 +76,11 @@ struct LoadedPoints {
   SimdVec3<V> m, c, t, slip;        // of pressing; axis; tractions; surface over anchor
   V q, limit_per_q, anchored, gap;  // normal load; mu s; FrictionLists::anchored; m.u - d
 
-  PALPATE_INLINE LoadedPoints(const FrictionLists& lists, const VectorList& directions, const float* d,
-                              std::size_t i, const SimdVec3<V>& z) noexcept
+  PALPATE_INLINE LoadedPoints(const FrictionLists& lists, const VectorList& directions,
+                              const VectorList& axes, const float* d, std::size_t i,
+                              const SimdVec3<V>& z) noexcept
       : m(directions.load(i)),
-        c(lists.axis.load(i)),
+        c(axes.load(i)),
         limit_per_q(V(lists.mu) * V(&lists.per_mu[i])),
         anchored(&lists.anchored[i]) {
     const SimdVec3<V> P = lists.load.load(i), u = lists.u.load(i);
@@ -136,11 +136,12 @@ class SlopeSum {
 class FrictionSteps {
  public:
   using V = VectorList::V;
-  FrictionSteps(std::size_t n, FrictionLists& lists, const VectorList& m, const float* d,
-                const LoadModel& model) noexcept
+  FrictionSteps(std::size_t n, FrictionLists& lists, const VectorList& m, const VectorList& axes,
+                const float* d, const LoadModel& model) noexcept
       : n_(n),
         lists_(lists),
         m_(m),
+        axes_(axes),
         d_(d),
         model_(model),
         has_common_(model.has_common()),
@@ -154,7 +155,7 @@ class FrictionSteps {
       total += (max)(dot(m_.load(i), lists_.load.load(i)), V(0.f));
     lists_.mu = coefficient(reduce(total));
     for (std::size_t i = 0; i < n_; i += V::size()) {
-      const SimdVec3<V> c = lists_.axis.load(i), P = lists_.load.load(i);
+      const SimdVec3<V> c = axes_.load(i), P = lists_.load.load(i);
       const V q = dot(m_.load(i), P), next = (max)(q, V(0.f));
       const SimdVec3<V> t = V(&lists_.anchored[i]) * (P - q * c);
       lists_.load.store(i, next * c + within(V(lists_.mu) * V(&lists_.per_mu[i]) * next, dot(t, t)) * t);
@@ -167,7 +168,7 @@ class FrictionSteps {
     const V zero(0.f);
     V left{}, loads{};
     for (std::size_t i = 0; i < n_; i += V::size()) {
-      const LoadedPoints p(lists_, m_, d_, i, SimdVec3<V>{});
+      const LoadedPoints p(lists_, m_, axes_, d_, i, SimdVec3<V>{});
       const V limit = p.limit_per_q * (max)(p.q, zero), t2 = dot(p.t, p.t),
               out = (min)(dot(p.slip, p.t), zero);
       // A point that slips may do so along its disc's rim.
@@ -251,7 +252,7 @@ class FrictionSteps {
     SlopeSum slopes;
     SimdVec3<V> steps{};
     for (std::size_t i = 0; i < n_; i += V::size()) {
-      const LoadedPoints p(lists_, m_, d_, i, SimdVec3<V>{});
+      const LoadedPoints p(lists_, m_, axes_, d_, i, SimdVec3<V>{});
       const V limit = p.limit_per_q * p.q, t2 = dot(p.t, p.t), loaded = select(p.q > zero, one, zero),
               slips = select(t2 < V(slips_from) * limit * limit, zero,
                              select(dot(p.slip, p.t) < zero, one, zero));
@@ -270,7 +271,7 @@ class FrictionSteps {
     V total{};
     SimdVec3<V> sum{};
     for (std::size_t i = 0; i < n_; i += V::size()) {
-      const LoadedPoints p(lists_, m_, d_, i, z);
+      const LoadedPoints p(lists_, m_, axes_, d_, i, z);
       const V dq = (max)(-(normal * p.gap), -p.q), next = p.q + dq;
       const SimdVec3<V> t = p.t - tangential * p.slip;
       const V t2 = dot(t, t), bound = p.limit_per_q * next, share = within(bound, t2);
@@ -288,7 +289,7 @@ class FrictionSteps {
 
   std::size_t n_;
   FrictionLists& lists_;
-  const VectorList& m_;
+  const VectorList &m_, &axes_;
   const float* d_;
   const LoadModel& model_;
   bool has_common_;
@@ -297,13 +298,15 @@ class FrictionSteps {
   float rounding_ = 0;
 };
 
-/// Loads for the depths d along m; `lists.load` is the start and the result, with u = A P. `apply(P, u)`
-/// gives u = A P; `coefficient(q)`: mu at the sum q of normal loads; tolerance on the norm [m].
+/// Loads for the depths d along m, on cones about `axes`; `lists.load` is the start and the result, with
+/// u = A P. `apply(P, u)` gives u = A P; `coefficient(q)`: mu at the sum q of normal loads; tolerance on the
+/// norm [m].
 template <class Apply, class Coefficient>
-[[nodiscard]] Remainder solve_loads(std::size_t n, FrictionLists& lists, const VectorList& m, const float* d,
-                                    const LoadModel& model, float tolerance, int iterations,
-                                    const Apply& apply, const Coefficient& coefficient) noexcept {
-  FrictionSteps steps(n, lists, m, d, model);
+[[nodiscard]] Remainder solve_loads(std::size_t n, FrictionLists& lists, const VectorList& m,
+                                    const VectorList& axes, const float* d, const LoadModel& model,
+                                    float tolerance, int iterations, const Apply& apply,
+                                    const Coefficient& coefficient) noexcept {
+  FrictionSteps steps(n, lists, m, axes, d, model);
   steps.begin(coefficient);
   apply(lists.load, lists.u);
   Remainder result;

@@ -28,20 +28,22 @@ class Reaction {
     sticks_.resize(size);
   }
 
-  /// Of the loads `result`, normal ones q. `slope`: gradient of the regular part along the surface; `beside`:
-  /// displacements by others' loads; `moved`: what the solve has left out of all displacements.
-  void measure(const PointSystem& system, const float* q, const Loads& result, const SimdVec3<V>& slope,
-               const auto& beside, const Vec3<float>& moved) noexcept {
+  /// Of the loads `result` on cones about `axes`, normal ones q. `slope`: gradient of the regular part along
+  /// the surface; `beside`: displacements by others' loads; `moved`: what the solve has left out of all
+  /// displacements.
+  void measure(const PointSystem& system, [[maybe_unused]] const VectorList& axes,
+               const AlignedList<float>& q, const Loads& result, const SimdVec3<V>& slope, const auto& beside,
+               const Vec3<float>& moved) noexcept {
     const V zero(0.f), one(1.f), tiny((std::numeric_limits<float>::min)());
     const SimdVec3<V> all = each<V>(moved);
     V total{}, sticking{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const SimdVec3<V> m = system.directions().load(i), n = system.normals().load(i),
                         P = result.load.load(i);
-      const V qi(q + i);
+      const V qi(&q[i]);
       V slips = one;
       if constexpr (has_friction) {
-        const SimdVec3<V> t = P - qi * result.axis.load(i), u = result.u.load(i);
+        const SimdVec3<V> t = P - qi * axes.load(i), u = result.u.load(i);
         const V limit = V(result.mu) * V(&result.per_mu[i]) * qi, limit2 = limit * limit, held2 = dot(t, t);
         const auto sticks = held2 < V(slips_from) * limit2;
         slips = select(sticks, held2 / (max)(limit2, tiny), one);

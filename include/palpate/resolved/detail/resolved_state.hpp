@@ -24,8 +24,6 @@
 #include <palpate/resolved/elastic_contact.hpp>
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <numbers>
 #include <numeric>
 #include <span>
@@ -52,17 +50,15 @@ class ResolvedState {
         regular_(body, capacity),
         beside_(max_beside, capacity, static_cast<float>(1 - 2 * body.nu())),
         carried_(capacity),
-        strain_(body.nu()) {
+        strain_(body.nu(), has_friction ? capacity : 0) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
     last_.resize(padded), pressure_.resize(padded), result_.resize(padded);
     reaction_.resize(padded), outward_.resize(padded);
   }
 
   void reset() noexcept {
-    contacts_.clear();
+    contacts_.clear(), forget(), beside_.forget();
     tick_ += 2;  // no point has touched in the tick before
-    forget();
-    beside_.forget();
   }
   [[nodiscard]] bool has_contact() const noexcept { return !contacts_.empty(); }
   [[nodiscard]] std::span<const PointContact<S>> contacts() const noexcept {
@@ -119,13 +115,9 @@ class ResolvedState {
   [[nodiscard]] bool look_again(int tries) noexcept { return touching_.empty() && shift_.come_back(tries); }
   /// A leaf of the tool's points over the surface as it lay before the body bent and friction carried it.
   [[nodiscard]] PointBatch<S> before(const PointBatch<S>& x) const noexcept {
-    if constexpr (has_friction) return carried_.before(shift_.before(x));
-    return shift_.before(x);
+    return carried_.before(shift_.before(x));
   }
-  [[nodiscard]] S most_before() const noexcept {
-    if constexpr (has_friction) return shift() + carried_.most();
-    return shift();
-  }
+  [[nodiscard]] S most_before() const noexcept { return shift() + static_cast<S>(carried_.most()); }
   /// Tool points from `begin` on, a leaf, over x in object coordinates (before()), are in the body;
   /// `rotation`: of the tool; the first is at `first` where it is. Returns how deep [m].
   S touch(const ToolSurface<S>& surface, std::uint32_t begin, const Mat3<float>& rotation,
@@ -155,9 +147,7 @@ class ResolvedState {
     contacts_.clear(), residual_ = {};
     const Pose<S> before = std::exchange(pose_, X);
     if (touching_.empty()) return forget();
-    float size2 = (std::numeric_limits<float>::min)();  // squares of depths may be no floats
-    for (const Touching& c : touching_) size2 += c.depth * c.depth;
-    const float tolerance = static_cast<float>(force.params().tolerance) * std::sqrt(size2);
+    const float tolerance = static_cast<float>(force.params().tolerance) * norm_of_depths(touching_);
     const Vec3<S>& x = tool.point(touching_[0].point);
     const float moved = first ? 0.f : static_cast<float>((X * x - before * x).norm());
     if constexpr (has_friction)  // those that stick go with the tool
@@ -170,17 +160,18 @@ class ResolvedState {
       const Point& p = points_[touching_[c].point];
       if (p.loaded || p.sunk - touching_[c].depth < near * system_.deepest()) inside_.push_back(c);
     }
+    bool left_out = false;
     for (int round = 0;; ++round) {
       build(force, tool);
       begin_loads(round == 0 ? share_that_goes_on<has_friction>(size(), last_, system_.directions(),
                                                                 system_.depth.data(), beside_)
                              : 1.f);
-      solve_inside(force, friction, tolerance);
+      left_out |= solve_inside(force, friction, tolerance);
       if constexpr (Strain::active)
         strain_.measure(system_, result_.load, pressure_.q.data(), pressure_.r.data(), regular_.response(),
                         beside_);
       const bool again = Strain::active && first && round == 0;  // the strain was not known
-      if (round == most_rounds || !take_in(force, tool, tolerance, again)) break;
+      if (round == most_rounds || !take_in(force, tool, tolerance, again, left_out)) break;
     }
     finish(tool, moved);
     beside_.drop();
@@ -203,8 +194,6 @@ class ResolvedState {
     if constexpr (has_friction) result_.step = 0, carried_.clear(origin_);
     if constexpr (Strain::active) strain_.forget(), regular_.take_in();
   }
-  // It was left out in contact: points that w's slope kept out come in from where they are.
-  [[nodiscard]] bool had_regular_part() const noexcept { return !regular_.moved().isZero(0); }
   // Where a load at `foot` acts, seen from afar.
   [[nodiscard]] Vec3<double> acts_at(const Vec3<float>& foot) const noexcept {
     return (origin_ + (foot + strain_.shift()).template cast<S>()).template cast<double>();
@@ -236,33 +225,45 @@ class ResolvedState {
     if (regular_.is_left_out()) system_.move(regular_.moved());
     if constexpr (Beside::active) beside_.move_points(system_, regular_);
   }
-  void solve_inside(const Force& force, const auto& friction, float tolerance) noexcept {
-    const int iterations = force.params().iterations;
-    Remainder left;
-    if constexpr (has_friction && RegularPart::active) regular_.begin_response();
+  Remainder iterate(const auto& friction, float tolerance, int iterations) noexcept {
     if constexpr (!has_friction)
-      left = solve_pressures(size(), pressure_, system_.depth.data(), tolerance, iterations,
+      return solve_pressures(size(), pressure_, system_.depth.data(), tolerance, iterations,
                              [this](const float* q, float* u) noexcept { displace(q, u); });
     else
-      left = solve_loads(
-          size(), result_, system_.directions(), system_.depth.data(),
+      return solve_loads(
+          size(), result_, system_.directions(), strain_.axes(system_), system_.depth.data(),
           {system_.flexible_step(), system_.tangential_share(),
            system_.common() + regular_.common() - strain_.common()},
           tolerance, iterations, [this](const VectorList& P, VectorList& u) noexcept { displace(P, u); },
-          [&](float q) noexcept { return coefficient(friction, q); });
+          [&](float q) noexcept { return strength_.coefficient(friction, static_cast<S>(q) * per_load_); });
+  }
+  // Returns whether w, which had moved the surface, has been left out.
+  bool solve_inside(const Force& force, const auto& friction, float tolerance) noexcept {
+    if constexpr (has_friction && RegularPart::active) regular_.begin_response();
+    const Remainder left = iterate(friction, tolerance, force.params().iterations);
     if constexpr (RegularPart::active)
       if (left.is_astray(system_.norm_of_depths()) && regular_.leave_out()) {
         system_.move(regular_.moved());
-        for (std::size_t i = 0; had_regular_part() && i < size(); ++i)
-          if (Point& p = point(i); !p.loaded) system_.depth[i] -= p.held = (std::max)(system_.depth[i], 0.f);
         begin_loads(0.f);
-        return solve_inside(force, friction, tolerance);
+        const bool had_moved = !regular_.moved().isZero(0);
+        if (had_moved) hold(friction);
+        (void)solve_inside(force, friction, tolerance);
+        return had_moved;
       }
     complete(system_.stride(), system_.directions(), system_.depth.data(), pressure_, result_);
     if constexpr (!has_friction && RegularPart::active) regular_.respond(result_.load);
     if constexpr (RegularPart::active) residual_.near_field_only = regular_.is_left_out();
     residual_.iterations += left.iterations;
     residual_.relative = left.norm * static_cast<float>(force.params().tolerance) / left.tolerance;
+    return false;
+  }
+  // Without w its slope, too, is gone: points go on with their loads, or as far out as these leave them.
+  void hold(const auto& friction) noexcept {
+    (void)iterate(friction, 0, 0);
+    complete(system_.stride(), system_.directions(), system_.depth.data(), pressure_, result_);
+    for (std::size_t i = 0; i < size(); ++i)
+      system_.depth[i] -= point(i).held =
+          point(i).loaded ? -pressure_.r[i] : (std::max)(system_.depth[i], 0.f);
   }
   void displace(const auto& loads, auto&& u) noexcept {
     system_.displace(loads, u);
@@ -283,11 +284,13 @@ class ResolvedState {
         strain_.limit_per_mu(system_, i, outward_.load(i), q).copy_to(&result_.per_mu[i]);
       }
     }
-    if constexpr (has_friction) strain_.set_axes(system_, outward_, result_.load, result_.axis);
+    if constexpr (has_friction && Strain::active) strain_.lean(system_, outward_, result_.load);
   }
 
-  /// Takes in points that the surface has not given way to. False where there are none, and not `again`.
-  bool take_in(const Force& force, const ToolPoints<S>& tool, float tolerance, bool again) noexcept {
+  /// Takes in points that the surface has not given way to, or holds them where they are: w was `left_out` in
+  /// this tick. False where none came in, and not `again`.
+  bool take_in(const Force& force, const ToolPoints<S>& tool, float tolerance, bool again,
+               bool left_out) noexcept {
     const std::size_t n = size();
     std::size_t next = 0;
     bool more = again;
@@ -300,7 +303,7 @@ class ResolvedState {
       const Touching& at = touching_[c];
       Point& p = points_[at.point];
       // Gaps change little in a tick: each is looked at in every eighth, but where no other point is left.
-      if ((tick_ + at.point) % 8 != 0 && !none_loaded) continue;
+      if ((tick_ + at.point) % 8 != 0 && !none_loaded && !left_out) continue;
       const Vec3<float> m = system_.direction_at(at.x, at.m);
       float depth = at.depth / m.dot(at.m);
       const Vec3<float> foot = at.x - depth * m;
@@ -313,9 +316,10 @@ class ResolvedState {
         gap += regular_.normal_at(force.compliance(), acts_at(foot), p.triangle, m);
       p.sunk = gap + at.depth;
       if (!(gap < -tolerance / 10)) continue;
-      const bool kept_out = had_regular_part() && p.held == 0;
-      if (kept_out) p.held = -gap;
-      if (!kept_out) inside_.push_back(c), more = true;  // sorted below; as many as touching_ at most
+      if (left_out)
+        p.held -= gap;
+      else
+        inside_.push_back(c), more = true;  // sorted below; as many as touching_ at most
     }
     if (!more) return false;
     for (std::size_t i = 0; i < n; ++i)
@@ -324,18 +328,13 @@ class ResolvedState {
     return true;
   }
 
-  /// mu of every point: the law's limit of the whole contact over its normal force, of loads q.
-  float coefficient(const auto& friction, float q) noexcept {
-    const S normal = static_cast<S>(q) * per_load_;
-    return normal > S(0) ? strength_.coefficient(friction, normal) : 0.f;
-  }
   void finish(const ToolPoints<S>& tool, [[maybe_unused]] float moved) noexcept {
     SimdVec3<V> slope{};
     if constexpr (RegularPart::active) {
       slope = each<V>(regular_.slope(system_, pressure_.q.data(), beside_));
       regular_.keep(pressure_.q.data());
     }
-    reaction_.measure(system_, pressure_.q.data(), result_, slope, beside_, regular_.moved());
+    reaction_.measure(system_, strain_.axes(system_), pressure_.q, result_, slope, beside_, regular_.moved());
     const Vec3<float> v = shift_.v();
     if constexpr (Shift::active)
       if (!regular_.is_left_out())

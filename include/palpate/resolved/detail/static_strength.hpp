@@ -18,9 +18,10 @@ namespace palpate::detail {
 class StaticStrength {
  public:
   using V = VectorList::V;
-  /// mu for the normal force of the whole contact [N], > 0.
+  /// mu of every point: the law's limit for the normal force of the whole contact [N], over that; 0 for none.
   template <class Friction, Real S>
   [[nodiscard]] float coefficient(const Friction& friction, S normal) noexcept {
+    if (!(normal > S(0))) return 0;
     const S highest = friction.static_limit(normal), sliding = friction.sliding_limit(normal);
     drop_ = highest > sliding ? static_cast<float>(1 - sliding / highest) : 0.f;
     return static_cast<float>(std::lerp(sliding, highest, static_cast<S>(left_)) / normal);

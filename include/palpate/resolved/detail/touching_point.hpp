@@ -5,10 +5,13 @@
 
 #include <palpate/core/aligned_list.hpp>
 #include <palpate/core/vector.hpp>
+#include <palpate/resolved/detail/bounded_list.hpp>
 #include <palpate/resolved/detail/vector_list.hpp>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace palpate::detail {
 
@@ -60,5 +63,12 @@ struct TouchingPoint {
   Vec3<float> outward;  ///< the tool's normal; m where it is not known
   float shifted = 0;    ///< of the body's shift, by which x is where the body was not bent
 };
+
+/// Of points beneath the surface [m]; never 0, though squares of depths may be no floats.
+[[nodiscard]] inline float norm_of_depths(const BoundedList<TouchingPoint>& touching) noexcept {
+  float sum = (std::numeric_limits<float>::min)();
+  for (const TouchingPoint& c : touching) sum += c.depth * c.depth;
+  return std::sqrt(sum);
+}
 
 }  // namespace palpate::detail
