@@ -18,8 +18,9 @@
 ///
 /// *Energy.* Without friction a closed path of 1,000 ticks and more gives no work: less than 0.5 % of what
 /// goes to and fro on a half-space (points come in up to eight ticks late: with 500 ticks 1 %). On a body
-/// with a response field the force follows the regular part's mean gradient along the surface: -3 to 3 % on
-/// an ellipsoid, -4 to 5 % on a bent one that is thin. With friction the hand gains nothing.
+/// with a response field the regular part's gradients are in force and torque, by regression over the
+/// contact: -0.6 to 0.6 % on an ellipsoid; -6 to 5 % on a bent one, by its tip, which is no wider than the
+/// tools, -2.4 to 1.2 % for the ball. With friction the hand gains nothing.
 ///
 /// PALPATE_STRESS in the environment (tests/run --stress): 10,000 paths and more.
 
@@ -365,7 +366,7 @@ TEST_CASE("resolved contact on random closed paths: a response field") {
   check(
       "response field", ellipsoid,
       ResponseCompliance(std::make_shared<const ResponseField>(ellipsoid_field(nu, 300))), seen_on(ellipsoid),
-      [](const V& x) { return x.y() > 0; }, 0.04, 4);
+      [](const V& x) { return x.y() > 0; }, 0.01, 4);
 }
 TEST_CASE("resolved contact on random closed paths: a response field, concave above") {
   // An ellipsoid bent upwards: its mesh is what a user has, its equation the path's.

@@ -95,8 +95,25 @@ TEST_CASE("without friction a closed path gives no energy: pressed, rolled over 
   const std::size_t allocations = heap.allocations();
   CHECK(allocations == 0);
   CHECK(spent > 1e-4);
-  // The mean gradient of the regular part is in the force, what m changes with the pose is not: 0.5 %.
-  CHECK(std::abs(work) <= 0.006 * spent);
+  // Measured: 2e-4; 4e-3 were the gradient by the directions of pressing left out.
+  CHECK(std::abs(work) <= 1e-3 * spent);
+}
+
+TEST_CASE("a frictionless ball feels no torque about its centre, wherever it presses") {
+  // The arm, of the torque over the force. Measured: 0.049 mm, by the mesh's points; 0.28 mm were the
+  // gradient by the directions of pressing left out.
+  auto solver = solver_of(0.0012);
+  const Ellipsoid<double> body({.axes = V(0.06, 0.04, 0.04)});
+  double arm = 0;
+  for (const double angle : {0.3, 0.6, 0.9, 1.1}) {
+    const auto top = body.closest(V(0.06 * std::sin(angle), 0.04 * std::cos(angle), 0));
+    solver.reset();
+    for (double d = 5e-5; d <= 3e-3; d += 5e-5) {
+      const auto felt = solver.tick(at(top.position + (R - d) * top.normal)).wrench;
+      if (d > 1.5e-3) arm = (std::max)(arm, felt.torque.norm() / felt.force.norm());
+    }
+  }
+  CHECK(arm <= 6e-5);
 }
 
 TEST_CASE("more points than the topology holds are said on a response field, too") {

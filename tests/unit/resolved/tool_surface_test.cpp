@@ -74,7 +74,8 @@ TEST_CASE_TEMPLATE("points of a leaf press by their depth, less where the tool's
         CHECK(std::abs(leaf.depth[k] - depth) <= 1e-5 * 1e-3);
         if (!(depth > 0)) continue;
         ++pressing;
-        const detail::TouchingPoint at = leaf.point(k, 7, 0.f);
+        const detail::TouchingPoint at = leaf.point(k, 7, 3, 0.f);
+        CHECK(at.group == 3);
         CHECK(at.point == 7);
         CHECK(at.depth == leaf.depth[k]);
         const Vec3<double> position(double(x.x[k] - origin.x()), double(x.y[k] - origin.y()),

@@ -38,7 +38,7 @@ class PointSystem {
   PointSystem(std::size_t capacity, float compressibility, bool has_friction)
       : has_friction_(has_friction), b_(compressibility), groups_(capacity) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
-    for (auto* list : {&depth, &area_, &per_width_, &back_}) list->resize(padded);
+    for (auto* list : {&depth, &area_, &per_width_, &back_, &turns_}) list->resize(padded);
     for (auto* list : {&m_, &x_at_, &x_, &n_, &backs_}) list->resize(padded);
     if (!has_friction) matrix_.resize(capacity * (capacity / 2 + 2 * V::size()));  // columns, each rounded up
   }
@@ -73,6 +73,17 @@ class PointSystem {
   [[nodiscard]] const VectorList& positions() const noexcept { return x_at_; }
   [[nodiscard]] const VectorList& feet() const noexcept { return x_; }
   [[nodiscard]] const float* areas() const noexcept { return area_.data(); }
+  [[nodiscard]] std::uint32_t groups() const noexcept { return static_cast<std::uint32_t>(groups_.size()); }
+  /// By how much directions turn with N, the sum of weighted normals that they are along: 1/|N| [1/m^3], less
+  /// where the surface's own normal counts.
+  [[nodiscard]] const float* turns() const noexcept { return turns_.data(); }
+  /// Sum of `list`, of points, by what a group's normals count for their directions.
+  [[nodiscard]] Vec3<float> turned_by(std::size_t group, const VectorList& list) const noexcept {
+    const SimdVec3<V> x = each(groups_[group].x);
+    SimdVec3<V> sum{};
+    for (std::size_t i = 0; i < stride_; i += V::size()) sum += weight(x - x_at_.load(i)) * list.load(i);
+    return sum_of(sum);
+  }
   [[nodiscard]] Vec3<float> direction(std::size_t i) const noexcept { return m_[i]; }
   [[nodiscard]] Vec3<float> position(std::size_t i) const noexcept { return x_at_[i]; }
   [[nodiscard]] float area(std::size_t i) const noexcept { return area_[i]; }
@@ -153,28 +164,30 @@ class PointSystem {
     return reduce(sum);
   }
 
+  template <SimdOrReal W>
+  struct Direction {
+    SimdVec3<W> m;
+    W turns;  ///< turns()
+  };
   /// The direction in which a point at x presses, where the surface's inward normal is n: the mean of the
   /// contact's normals, for the surface turns from its own normal to the tool's, and this is halfway; against
   /// finite elements a ball pressed by half its radius is 3.6 % too stiff with the mean and 9.5 % with n.
   /// Weights are what is pressed in, so that m is continuous in the pose. Other contacts of the tool, some
   /// widths away, hardly count.
   template <SimdOrReal W>
-  [[nodiscard]] PALPATE_INLINE SimdVec3<W> direction(const SimdVec3<W>& x,
-                                                     const SimdVec3<W>& n) const noexcept {
+  [[nodiscard]] PALPATE_INLINE Direction<W> direction(const SimdVec3<W>& x,
+                                                      const SimdVec3<W>& n) const noexcept {
     SimdVec3<W> total{W(0.f), W(0.f), W(0.f)};
-    for (const Group& group : groups_) {
-      const SimdVec3<W> r = each<W>(group.x) - x;
-      const W far = 1.f + per_size2_ * dot(r, r);
-      total += (1.f / (far * far)) * each<W>(group.n);
-    }
-    const SimdVec3<W> m = inverse_sqrt(dot(total, total)) * total;
+    for (const Group& group : groups_) total += weight(each<W>(group.x) - x) * each<W>(group.n);
+    const W per_total = inverse_sqrt(dot(total, total));
+    const SimdVec3<W> m = per_total * total;
     // From 37 to 60 degrees off it goes over to the surface's own normal, as over an edge of the body.
     const W share = clamp(W((dot(m, n) - 0.5f) * (1 / 0.3f)), 0.f, 1.f);
     const SimdVec3<W> mixed = share * m + (1.f - share) * n;
-    return inverse_sqrt(dot(mixed, mixed)) * mixed;
+    return {inverse_sqrt(dot(mixed, mixed)) * mixed, share * per_total};
   }
   [[nodiscard]] Vec3<float> direction_at(const Vec3<float>& x, const Vec3<float>& n) const noexcept {
-    const SimdVec3<float> m = direction(each<float>(x), each<float>(n));
+    const SimdVec3<float> m = direction(each<float>(x), each<float>(n)).m;
     return {m.x, m.y, m.z};
   }
 
@@ -185,6 +198,12 @@ class PointSystem {
     Vec3<float> x, n;  // mean position, sum of normals, by depth and area
   };
 
+  // Of a group at r from a point, for its direction.
+  template <SimdOrReal W>
+  [[nodiscard]] PALPATE_INLINE W weight(const SimdVec3<W>& r) const noexcept {
+    const W far = 1.f + per_size2_ * dot(r, r);
+    return 1.f / (far * far);
+  }
   [[nodiscard]] static std::size_t first_of(std::size_t j) noexcept { return j / V::size() * V::size(); }
 
   // 0 up to lane k, then 1.
@@ -205,8 +224,10 @@ class PointSystem {
     }
     per_size2_ = deepest_ / (2 * volume_);
     for (std::size_t i = 0; i < stride_; i += V::size()) {
-      const SimdVec3<V> n = n_.load(i), m = direction(x_at_.load(i), n);
+      const SimdVec3<V> n = n_.load(i);
+      const auto [m, turns] = direction(x_at_.load(i), n);
       const V deep = V(&depth[i]) / dot(m, n);
+      turns.copy_to(&turns_[i]);
       deep.copy_to(&depth[i]);
       x_.store(i, x_at_.load(i) - deep * m);
       m_.store(i, m);
@@ -214,7 +235,7 @@ class PointSystem {
     for (std::size_t i = size_; i < stride_; ++i) {  // what fills up presses on no point
       x_.set(i, apart());
       m_.set(i, Vec3<float>::Zero());
-      per_width_[i] = 0;
+      per_width_[i] = turns_[i] = 0;
       area_[i] = 1;
     }
   }
@@ -275,7 +296,7 @@ class PointSystem {
   float deepest_ = 0, volume_ = 0,
         per_size2_ = 1;  // the volume pressed over the depth: a ball's contact area
   float whole_area_ = 0;
-  AlignedList<float> area_, per_width_;
+  AlignedList<float> area_, per_width_, turns_;
   VectorList m_, x_at_, x_, n_;  // directions of pressing, the points, their feet, normals
   BoundedList<Group> groups_;
   AlignedList<float> matrix_;  // without friction: pairs i > j by column

@@ -28,11 +28,11 @@ class Reaction {
     sticks_.resize(size);
   }
 
-  /// Of the loads `result` on cones about `axes`, normal ones q. `slope`: gradient of the regular part along
-  /// the surface; `beside`: displacements by others' loads; `moved`: what the solve has left out of all
+  /// Of the loads `result` on cones about `axes`, normal ones q. `gradient`: of the regular part, what they
+  /// feel less; `beside`: displacements by others' loads; `moved`: what the solve has left out of all
   /// displacements.
   void measure(const PointSystem& system, [[maybe_unused]] const VectorList& axes,
-               const AlignedList<float>& q, const Loads& result, const SimdVec3<V>& slope, const auto& beside,
+               const AlignedList<float>& q, const Loads& result, const auto& gradient, const auto& beside,
                const Vec3<float>& moved) noexcept {
     const V zero(0.f), one(1.f), tiny((std::numeric_limits<float>::min)());
     const SimdVec3<V> all = each<V>(moved);
@@ -56,7 +56,7 @@ class Reaction {
       }
       // The tool feels minus the gradient of the energy as far as the point slips: of the depth along the
       // direction of pressing, and of the regular part. Where it sticks the body goes with it.
-      felt_.store(i, P + (slips * qi) * (one / (max)(dot(n, m), tiny) * n - m - slope));
+      felt_.store(i, P + (slips * qi) * (one / (max)(dot(n, m), tiny) * n - m - gradient.less(system, i, n)));
     }
     total_ = reduce(total), sticking_ = reduce(sticking);
   }

@@ -183,44 +183,6 @@ class RegularPart {
   }
   /// w at point i of that.
   [[nodiscard]] Vec3<float> beside(std::size_t i) const noexcept { return at(weights_[i], u_beside_); }
-  /// Gradient along the surface of n.w, n the surface's own normal, w of response() and of what others' loads
-  /// do (`given`): by regression over the pressures q. One gradient for all is continuous in the pose; the
-  /// load mesh's own jumps from triangle to triangle. With friction w along m alone: across it the surface
-  /// has been carried along, and points are put over it there (carried_surface.hpp).
-  template <class Given>
-  [[nodiscard]] Vec3<float> slope(const PointSystem& system, const float* q,
-                                  const Given& given) const noexcept {
-    const auto w_at = [&](std::size_t i) PALPATE_INLINE_LAMBDA {
-      const SimdVec3<V> n = system.normals().load(i), m = system.directions().load(i),
-                        w = w_.load(i) + given.load(i);
-      return system.has_friction() ? dot(n, m) * dot(m, w) : dot(n, w);
-    };
-    V loads{}, ws{}, areas{};
-    SimdVec3<V> xs{}, ms{};
-    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
-      const V qi(q + i);
-      loads += qi, ws += qi * w_at(i), areas += qi * V(system.areas() + i);
-      xs += qi * system.feet().load(i), ms += qi * system.directions().load(i);
-    }
-    const float load = reduce(loads);
-    if (!(load > 0)) return Vec3<float>::Zero();
-    const SimdVec3<V> mean_x = each(Vec3<float>(sum_of(xs) / load)),
-                      m = each(Vec3<float>(sum_of(ms).normalized()));
-    const V mean_w(reduce(ws) / load);
-    SimdVec3<V> squares{}, products{}, with_w{};
-    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
-      const SimdVec3<V> x = across(m, system.feet().load(i) - mean_x), qx = V(q + i) * x;
-      squares += SimdVec3<V>{qx.x * x.x, qx.y * x.y, qx.z * x.z};
-      products += SimdVec3<V>{qx.y * x.z, qx.z * x.x, qx.x * x.y};
-      with_w += (w_at(i) - mean_w) * qx;
-    }
-    const Vec3<float> xx = sum_of(squares) / load, xy = sum_of(products) / load;
-    Mat3<float> spread;
-    spread << xx.x(), xy.z(), xy.y(), xy.z(), xx.y(), xy.x(), xy.y(), xy.x(), xx.z();
-    spread += reduce(areas) / (12 * load) * Mat3<float>::Identity();  // a cell's own
-    const float size = spread.trace();                                // powers of small numbers would be 0
-    return (spread / size).inverse() * (sum_of(with_w) / (load * size));
-  }
   /// w along m at a further point, by the loads of response(), with others' loads if there are any.
   template <class Body>
   [[nodiscard]] float normal_at(const Body& body, const Vec3<double>& x, std::uint32_t& triangle,

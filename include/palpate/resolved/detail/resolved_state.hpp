@@ -17,6 +17,7 @@
 #include <palpate/resolved/detail/loads_beside.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/resolved/detail/reaction.hpp>
+#include <palpate/resolved/detail/regular_gradient.hpp>
 #include <palpate/resolved/detail/static_strength.hpp>
 #include <palpate/resolved/detail/tick_change.hpp>
 #include <palpate/resolved/detail/tool_surface.hpp>
@@ -50,7 +51,8 @@ class ResolvedState {
         regular_(body, capacity),
         beside_(max_beside, capacity, static_cast<float>(1 - 2 * body.nu())),
         carried_(capacity),
-        strain_(body.nu(), has_friction ? capacity : 0) {
+        strain_(body.nu(), has_friction ? capacity : 0),
+        gradient_(capacity) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
     last_.resize(padded), pressure_.resize(padded), result_.resize(padded);
     reaction_.resize(padded), outward_.resize(padded);
@@ -103,8 +105,7 @@ class ResolvedState {
     per_load_ = static_cast<S>(4 * std::numbers::pi * force.shear_modulus());
     beside_.begin_tick(object, force.compliance(), tool, pose_, X, has_contact(), per_load_, regular_);
     ++tick_;
-    touching_.clear(), has_room_ = true;
-    system_.begin_tick();
+    touching_.clear(), system_.begin_tick(), has_room_ = true;
   }
   /// Where the tool at X is over the undeformed surface, which others' loads move.
   [[nodiscard]] Pose<S> over(const Pose<S>& X) const noexcept { return beside_.over(X); }
@@ -133,7 +134,7 @@ class ResolvedState {
       deepest = (std::max)(deepest, in.depth[k]);
       has_room_ = !touching_.full();
       if (!has_room_) continue;
-      touching_.push_back(leaf.point(k, begin + k, shifted));
+      touching_.push_back(leaf.point(k, begin + k, system_.groups() - 1, shifted));
       Point& p = points_[begin + k];
       if (p.tick + 1 != tick_) p = {};
       p.tick = tick_;
@@ -329,16 +330,15 @@ class ResolvedState {
   }
 
   void finish(const ToolPoints<S>& tool, [[maybe_unused]] float moved) noexcept {
-    SimdVec3<V> slope{};
-    if constexpr (RegularPart::active) {
-      slope = each<V>(regular_.slope(system_, pressure_.q.data(), beside_));
-      regular_.keep(pressure_.q.data());
-    }
-    reaction_.measure(system_, strain_.axes(system_), pressure_.q, result_, slope, beside_, regular_.moved());
     const Vec3<float> v = shift_.v();
-    if constexpr (Shift::active)
+    if constexpr (RegularPart::active) {
+      gradient_.measure(system_, pressure_.q.data(), regular_.response(), beside_, touching_, tool);
+      regular_.keep(pressure_.q.data());
       if (!regular_.is_left_out())
         shift_.measure(system_, pressure_.q.data(), regular_.response(), origin_, moved);
+    }
+    reaction_.measure(system_, strain_.axes(system_), pressure_.q, result_, gradient_, beside_,
+                      regular_.moved());
     if constexpr (has_friction) carried_.clear(origin_);
     for (std::size_t i = 0; i < size(); ++i) {
       const Touching& at = touching_[inside_[i]];
@@ -383,6 +383,7 @@ class ResolvedState {
   PALPATE_NO_UNIQUE_ADDRESS Beside beside_;
   PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<has_friction, CarriedSurface<S>, StillSurface> carried_;
   PALPATE_NO_UNIQUE_ADDRESS Strain strain_;
+  PALPATE_NO_UNIQUE_ADDRESS GradientOf<RegularPart, has_friction> gradient_;
   PALPATE_NO_UNIQUE_ADDRESS Shift shift_;
   Residual residual_;
   Pose<S> pose_;

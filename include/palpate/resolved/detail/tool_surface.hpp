@@ -31,10 +31,11 @@ struct TouchingLeaf {
   float volume;                    ///< sum of depth by area [m^3]
   Vec3<float> volume_x, volume_m;  ///< sums of x and of m by these
 
-  /// Its k-th point, `i` of the tool, of which TouchingPoint::shifted is given.
-  [[nodiscard]] TouchingPoint point(std::size_t k, std::uint32_t i, float shifted) const noexcept {
+  /// Its k-th point, `i` of the tool, of which TouchingPoint::group and shifted are given.
+  [[nodiscard]] TouchingPoint point(std::size_t k, std::uint32_t i, std::uint32_t group,
+                                    float shifted) const noexcept {
     const auto at = [k](const auto& v) { return Vec3<float>(v[0][k], v[1][k], v[2][k]); };
-    return {i, depth[k], at(x), at(m), at(outward), shifted};
+    return {i, depth[k], at(x), at(m), at(outward), group, shifted};
   }
 };
 

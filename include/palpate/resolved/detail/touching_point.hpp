@@ -61,6 +61,7 @@ struct TouchingPoint {
   Vec3<float> x;        ///< where friction has not carried the surface, from the tick's origin [m]
   Vec3<float> m;        ///< the surface's inward normal
   Vec3<float> outward;  ///< the tool's normal; m where it is not known
+  std::uint32_t group;  ///< of points that lie side by side (PointSystem::touch)
   float shifted = 0;    ///< of the body's shift, by which x is where the body was not bent
 };
 

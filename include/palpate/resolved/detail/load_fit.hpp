@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file What changes linearly over a contact, fitted by its loads.
+
+#include <palpate/core/simd_math.hpp>
+#include <palpate/resolved/detail/point_system.hpp>
+#include <palpate/resolved/detail/vector_list.hpp>
+
+#include <algorithm>
+
+namespace palpate::detail {
+
+/// Moments of the loads q over the feet x of a contact, across its mean direction m:
+///
+///     mean = sum q x / sum q,   spread = (sum q r r^T + own sum q A / 12 I) / sum q,   r = x - mean
+///
+/// Cells' own spread keeps few points from a slope of their own. It counts by own = 4 sum q^2 / (sum q)^2, at
+/// most 1: in full for four points that carry alike, by a tenth for forty. In full everywhere it would make
+/// a slope over a dozen points a tenth too small.
+class LoadFit {
+ public:
+  using V = VectorList::V;
+  /// `system` and q, zeros beyond its points, outlive it.
+  LoadFit(const PointSystem& system, const float* q) noexcept : system_(system), q_(q) {
+    V loads{};
+    SimdVec3<V> xs{}, ms{};
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+      const V qi(q + i);
+      loads += qi, xs += qi * system.feet().load(i), ms += qi * system.directions().load(i);
+    }
+    load_ = reduce(loads);
+    if (!has_load()) return;
+    mean_ = sum_of(xs) / load_, m_ = sum_of(ms).normalized();
+    const V per_load(1 / load_);
+    V areas{}, shares2{};
+    SimdVec3<V> squares{}, products{};
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+      const SimdVec3<V> r = from_mean(i);
+      const V share = per_load * V(q + i);
+      const SimdVec3<V> sr = share * r;
+      squares += SimdVec3<V>{sr.x * r.x, sr.y * r.y, sr.z * r.z};
+      products += SimdVec3<V>{sr.y * r.z, sr.z * r.x, sr.x * r.y};
+      areas += share * V(system.areas() + i), shares2 += share * share;
+    }
+    const Vec3<float> xx = sum_of(squares), xy = sum_of(products);
+    Mat3<float> spread;
+    spread << xx.x(), xy.z(), xy.y(), xy.z(), xx.y(), xy.x(), xy.y(), xy.x(), xx.z();
+    spread += (std::min)(4 * reduce(shares2), 1.f) * reduce(areas) / 12 * Mat3<float>::Identity();
+    const float size = spread.trace();  // powers of small numbers would be 0
+    per_spread_ = (spread / size).inverse() / size;
+  }
+  [[nodiscard]] bool has_load() const noexcept { return load_ > 0; }
+  [[nodiscard]] float load() const noexcept { return load_; }
+  [[nodiscard]] const Vec3<float>& mean() const noexcept { return mean_; }
+  /// r of points i .. on.
+  [[nodiscard]] PALPATE_INLINE SimdVec3<V> from_mean(std::size_t i) const noexcept {
+    return across(each(m_), system_.feet().load(i) - each(mean_));
+  }
+  /// Gradient across m of what is f(i) at points i .. on, by regression.
+  template <class F>
+  [[nodiscard]] Vec3<float> slope(const F& f) const noexcept {
+    V sum{};
+    for (std::size_t i = 0; i < system_.stride(); i += V::size()) sum += V(q_ + i) * f(i);
+    const V mean(reduce(sum) / load_);
+    SimdVec3<V> products{};
+    for (std::size_t i = 0; i < system_.stride(); i += V::size())
+      products += (V(q_ + i) * (f(i) - mean)) * from_mean(i);
+    return per_spread_ * (sum_of(products) / load_);
+  }
+  /// D, of loads q D.r with the moment sum q r (D.r) = `moment`, a sum of loads by r.
+  [[nodiscard]] Vec3<float> tilt(const Vec3<float>& moment) const noexcept {
+    return per_spread_ * ((moment - m_.dot(moment) * m_) / load_);
+  }
+
+ private:
+  const PointSystem& system_;
+  const float* q_;
+  float load_ = 0;
+  Vec3<float> mean_ = Vec3<float>::Zero(), m_ = Vec3<float>::Zero();
+  Mat3<float> per_spread_ = Mat3<float>::Zero();
+};
+
+}  // namespace palpate::detail

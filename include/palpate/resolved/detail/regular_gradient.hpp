@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file How a contact's energy changes along a body that is no half-space: what the tool feels of it.
+
+#include <palpate/detection/tool_points.hpp>
+#include <palpate/resolved/detail/load_fit.hpp>
+#include <palpate/resolved/detail/point_system.hpp>
+#include <palpate/resolved/detail/touching_point.hpp>
+#include <palpate/resolved/detail/vector_list.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+
+namespace palpate::detail {
+
+/// Gradients of the energy of the loads q_i m_i in the regular displacements w, their own and what other
+/// tools' loads do.
+///
+/// *Along the surface*: of n.w, n the surface's own normal, by regression over the loads. One gradient for
+/// all is continuous in the pose; the load mesh's own jumps from triangle to triangle. With friction of w
+/// along m alone: across it the surface has been carried along, and points are put over it there
+/// (carried_surface.hpp).
+///
+/// *Of the directions m_i*, without friction: they turn as the points k beneath the surface come deeper.
+/// The energy's gradient by m_i is -q_i w_i, so that the tool is pressed less at k, by g_k:
+///
+///     N_i = sum_k c_ik depth_k A_k n_k,   m_i = N_i/|N_i|                          (PointSystem)
+///     g_k = A_k n_k.sum_i c_ik q_i (w_i - (m_i.w_i) m_i) / |N_i|
+///
+/// The points that carry load take that over, with its sum and its moment: q_i (b + D.r_i) (LoadFit). It is
+/// what turns a tool that presses on a curved body where this draws it aside. Without it an ellipsoid beside
+/// the ridge of a lying cylinder has 28 % of error in its torque, 4 % with it (finite elements), and a closed
+/// path on an ellipsoid gives up to 3 % of all work to and fro, 0.6 % with it.
+template <bool has_friction>
+class RegularGradient {
+ public:
+  using V = VectorList::V;
+  explicit RegularGradient(std::size_t capacity) {
+    if (!has_friction) sideways_.resize(capacity);
+  }
+
+  /// After a solve with normal loads q and displacements w by them; `given`: by others' loads.
+  template <Real S>
+  void measure(const PointSystem& system, const float* q, const VectorList& w, const auto& given,
+               const BoundedList<TouchingPoint>& touching, const ToolPoints<S>& tool) noexcept {
+    slope_ = tilt_ = mean_ = {}, less_ = 0;
+    const LoadFit fit(system, q);
+    if (!fit.has_load()) return;
+    slope_ = each(fit.slope([&](std::size_t i) PALPATE_INLINE_LAMBDA {
+      const SimdVec3<V> n = system.normals().load(i), all = w.load(i) + given.load(i);
+      if constexpr (!has_friction) return dot(n, all);
+      const SimdVec3<V> m = system.directions().load(i);
+      return dot(n, m) * dot(m, all);
+    }));
+    if constexpr (!has_friction) measure_turn(system, q, w, given, touching, tool, fit);
+  }
+  /// What points i .. on feel less than q, over q, along n; and along the surface.
+  [[nodiscard]] PALPATE_INLINE SimdVec3<V> less(const PointSystem& system, std::size_t i,
+                                                const SimdVec3<V>& n) const noexcept {
+    if constexpr (has_friction) return slope_;
+    return slope_ + (less_ + dot(tilt_, system.feet().load(i) - mean_)) * n;
+  }
+
+ private:
+  void measure_turn(const PointSystem& system, const float* q, const VectorList& w, const auto& given,
+                    const BoundedList<TouchingPoint>& touching, const auto& tool,
+                    const LoadFit& fit) noexcept {
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+      const SimdVec3<V> all = w.load(i) + given.load(i);
+      sideways_.store(i, (V(q + i) * V(system.turns() + i)) * across(system.directions().load(i), all));
+    }
+    float sum = 0;
+    Vec3<float> moment = Vec3<float>::Zero(), H = Vec3<float>::Zero();
+    auto group = (std::numeric_limits<std::uint32_t>::max)();
+    for (const TouchingPoint& c : touching) {
+      if (c.group != group) H = system.turned_by(group = c.group, sideways_);
+      const float g = static_cast<float>(tool.area(c.point)) * H.dot(c.m);
+      sum += g, moment += g * (c.x - fit.mean());
+    }
+    less_ = V(sum / fit.load());
+    tilt_ = each(fit.tilt(moment)), mean_ = each(fit.mean());
+  }
+
+  SimdVec3<V> slope_{}, tilt_{}, mean_{};
+  V less_{};
+  VectorList sideways_;  // q_i (w_i - (m_i.w_i) m_i) / |N_i|
+};
+
+/// Of a half-space, which is the same everywhere.
+struct NoRegularGradient {
+  explicit NoRegularGradient(std::size_t /*capacity*/) {}
+  [[nodiscard]] PALPATE_INLINE static SimdVec3<VectorList::V> less(const auto&...) noexcept { return {}; }
+};
+
+template <class RegularPart, bool has_friction>
+using GradientOf = std::conditional_t<RegularPart::active, RegularGradient<has_friction>, NoRegularGradient>;
+
+}  // namespace palpate::detail
