@@ -79,6 +79,17 @@ TEST_CASE("loads that change linearly over a contact have the moment asked for a
   CHECK(std::abs(sum) <= 1e-5 * sizes);  // rounding
 }
 
+TEST_CASE("a surface is flat to a milliradian") {
+  // Two normals at an angle a: their mean is shorter than 1 by a^2/8.
+  for (const float angle : {0.f, 1e-3f, 5e-3f, 0.1f}) {
+    detail::PointSystem system(most, 0.02f, false);
+    system.begin_tick();
+    system.touch(1e-3f, 1e-9f, V::Zero(), -1e-9f * V::UnitY());
+    system.touch(1e-3f, 1e-9f, V::Zero(), 1e-9f * V(std::sin(angle), -std::cos(angle), 0));
+    CHECK(system.is_flat() == (angle < 2e-3f));
+  }
+}
+
 TEST_CASE("without load there is nothing to fit") {
   Loaded contact(2);
   for (std::size_t i = 0; i < 4; ++i) contact.q[i] = 0;

@@ -74,6 +74,12 @@ class PointSystem {
   [[nodiscard]] const VectorList& feet() const noexcept { return x_; }
   [[nodiscard]] const float* areas() const noexcept { return area_.data(); }
   [[nodiscard]] std::uint32_t groups() const noexcept { return static_cast<std::uint32_t>(groups_.size()); }
+  /// Whether normals differ by a milliradian at most, their mean's length by 1e-6, ten roundings, from 1.
+  [[nodiscard]] bool is_flat() const noexcept {
+    Vec3<float> sum = Vec3<float>::Zero();
+    for (const Group& group : groups_) sum += group.n;
+    return sum.norm() >= (1 - 1e-6f) * volume_;
+  }
   /// By how much directions turn with N, the sum of weighted normals that they are along: 1/|N| [1/m^3], less
   /// where the surface's own normal counts.
   [[nodiscard]] const float* turns() const noexcept { return turns_.data(); }

@@ -33,7 +33,7 @@ namespace palpate::detail {
 /// The points that carry load take that over, with its sum and its moment: q_i (b + D.r_i) (LoadFit). It is
 /// what turns a tool that presses on a curved body where this draws it aside. Without it an ellipsoid beside
 /// the ridge of a lying cylinder has 28 % of error in its torque, 4 % with it (finite elements), and a closed
-/// path on an ellipsoid gives up to 3 % of all work to and fro, 0.6 % with it.
+/// path on an ellipsoid gives up to 3 % of all work to and fro, 0.6 % with it. On a flat face it is 0.
 template <bool has_friction>
 class RegularGradient {
  public:
@@ -55,7 +55,8 @@ class RegularGradient {
       const SimdVec3<V> m = system.directions().load(i);
       return dot(n, m) * dot(m, all);
     }));
-    if constexpr (!has_friction) measure_turn(system, q, w, given, touching, tool, fit);
+    if constexpr (!has_friction)
+      if (!system.is_flat()) measure_turn(system, q, w, given, touching, tool, fit);
   }
   /// What points i .. on feel less than q, over q, along n; and along the surface.
   [[nodiscard]] PALPATE_INLINE SimdVec3<V> less(const PointSystem& system, std::size_t i,
