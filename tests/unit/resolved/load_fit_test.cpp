@@ -50,7 +50,7 @@ V slope_of(const Loaded& contact) {
 
 TEST_CASE("the slope over a contact's loads is the function's, less what few points' own cells take") {
   // Of 2 x 2 points: x has the variance 2/9 of a cell for loads 1 to 2, z 1/4, and a cell's own is 1/12 of
-  // it, times 4 sum q^2/(sum q)^2 >= 1. Rounding of float: 1e-7 of 0.1 over 3e-3.
+  // it, times 4 sum q^2/(sum q)^2 >= 1. Rounding of float: 1e-7 of 0.1 over slopes of 1e-3 m, 1e-5; ten such.
   const V four = slope_of(Loaded(2)), many = slope_of(Loaded(8));
   CHECK_RELATIVE(four.x(), 3 * (2. / 9) / (2. / 9 + 1. / 12), 1e-4);
   CHECK_RELATIVE(four.z(), -2 * (1. / 4) / (1. / 4 + 1. / 12), 1e-4);

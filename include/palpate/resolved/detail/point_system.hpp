@@ -38,7 +38,7 @@ class PointSystem {
   PointSystem(std::size_t capacity, float compressibility, bool has_friction)
       : has_friction_(has_friction), b_(compressibility), groups_(capacity) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
-    for (auto* list : {&depth, &area_, &per_width_, &back_, &turns_}) list->resize(padded);
+    for (auto* list : {&depth, &area_, &per_width_, &back_}) list->resize(padded);
     for (auto* list : {&m_, &x_at_, &x_, &n_, &backs_}) list->resize(padded);
     if (!has_friction) matrix_.resize(capacity * (capacity / 2 + 2 * V::size()));  // columns, each rounded up
   }
@@ -82,7 +82,9 @@ class PointSystem {
   }
   /// By how much directions turn with N, the sum of weighted normals that they are along: 1/|N| [1/m^3], less
   /// where the surface's own normal counts.
-  [[nodiscard]] const float* turns() const noexcept { return turns_.data(); }
+  [[nodiscard]] PALPATE_INLINE V turns(std::size_t i) const noexcept {
+    return direction(x_at_.load(i), n_.load(i)).turns;
+  }
   /// Sum of `list`, of points, by what a group's normals count for their directions.
   [[nodiscard]] Vec3<float> turned_by(std::size_t group, const VectorList& list) const noexcept {
     const SimdVec3<V> x = each(groups_[group].x);
@@ -231,9 +233,8 @@ class PointSystem {
     per_size2_ = deepest_ / (2 * volume_);
     for (std::size_t i = 0; i < stride_; i += V::size()) {
       const SimdVec3<V> n = n_.load(i);
-      const auto [m, turns] = direction(x_at_.load(i), n);
+      const SimdVec3<V> m = direction(x_at_.load(i), n).m;
       const V deep = V(&depth[i]) / dot(m, n);
-      turns.copy_to(&turns_[i]);
       deep.copy_to(&depth[i]);
       x_.store(i, x_at_.load(i) - deep * m);
       m_.store(i, m);
@@ -241,7 +242,7 @@ class PointSystem {
     for (std::size_t i = size_; i < stride_; ++i) {  // what fills up presses on no point
       x_.set(i, apart());
       m_.set(i, Vec3<float>::Zero());
-      per_width_[i] = turns_[i] = 0;
+      per_width_[i] = 0;
       area_[i] = 1;
     }
   }
@@ -302,7 +303,7 @@ class PointSystem {
   float deepest_ = 0, volume_ = 0,
         per_size2_ = 1;  // the volume pressed over the depth: a ball's contact area
   float whole_area_ = 0;
-  AlignedList<float> area_, per_width_, turns_;
+  AlignedList<float> area_, per_width_;
   VectorList m_, x_at_, x_, n_;  // directions of pressing, the points, their feet, normals
   BoundedList<Group> groups_;
   AlignedList<float> matrix_;  // without friction: pairs i > j by column

@@ -71,7 +71,7 @@ class RegularGradient {
                     const LoadFit& fit) noexcept {
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const SimdVec3<V> all = w.load(i) + given.load(i);
-      sideways_.store(i, (V(q + i) * V(system.turns() + i)) * across(system.directions().load(i), all));
+      sideways_.store(i, (V(q + i) * system.turns(i)) * across(system.directions().load(i), all));
     }
     float sum = 0;
     Vec3<float> moment = Vec3<float>::Zero(), H = Vec3<float>::Zero();
