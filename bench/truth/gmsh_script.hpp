@@ -137,7 +137,7 @@ class GmshScript {
                            std::sqrt(s.x() * s.x() - body_.fixed_height * body_.fixed_height), ")^2)"));
         break;
       case Body::bean:
-        add_size(3 * rim, text("abs(y - (", body_.fixed_height, "))"));
+        add_size(1.2 * rim, text("abs(y - (", body_.fixed_height, "))"));
         break;
       case Body::ellipsoid: {
         const double share = std::sqrt(1 - std::pow(body_.fixed_height / s.y(), 2));
@@ -145,9 +145,10 @@ class GmshScript {
                                s.z(), ")^2) - ", share, ") * ", (std::min)(s.x(), s.z()), ")^2)"));
       }
     }
+    // A bean rocks on its narrow base: with a seventh, and three rims, its ends move by 5 to 9 % too little.
+    const double largest = body_.smallest() / (body_.kind == Body::bean ? 14 : 7);
     ++fields_;
-    script_ +=
-        text("Field[", fields_, "] = MathEval;\nField[", fields_, "].F = \"", body_.smallest() / 7, "\";\n");
+    script_ += text("Field[", fields_, "] = MathEval;\nField[", fields_, "].F = \"", largest, "\";\n");
     sizes_ += text(", ", fields_);
     ++fields_;
     script_ += text("Field[", fields_, "] = Min;\nField[", fields_, "].FieldsList = {", sizes_, "};\n");

@@ -19,21 +19,19 @@ namespace palpate::detail {
 /// Gradients of the energy of the loads q_i m_i in the regular displacements w, their own and what other
 /// tools' loads do.
 ///
-/// *Along the surface*: of n.w, n the surface's own normal, by regression over the loads. One gradient for
-/// all is continuous in the pose; the load mesh's own jumps from triangle to triangle. With friction of w
-/// along m alone: across it the surface has been carried along, and points are put over it there
-/// (carried_surface.hpp).
+/// *Along the surface*: of n.(w - v), n the surface's own normal, by regression over the loads; points are
+/// put over the surface by v already (body_shift.hpp). One gradient for all is continuous in the pose; the
+/// load mesh's own jumps from triangle to triangle. With friction of w along m alone: across it the surface
+/// has been carried along, and points are put over it there (carried_surface.hpp).
 ///
 /// *Of the directions m_i*, without friction: they turn as the points k beneath the surface come deeper.
 /// The energy's gradient by m_i is -q_i w_i, so that the tool is pressed less at k, by g_k:
 ///
 ///     N_i = sum_k c_ik depth_k A_k n_k,   m_i = N_i/|N_i|                          (PointSystem)
-///     g_k = A_k n_k.sum_i c_ik q_i (w_i - (m_i.w_i) m_i) / |N_i|
+///     g_k = A_k n_k.sum_i c_ik q_i (1 - m_i m_i^T) (w_i - v) / |N_i|
 ///
 /// The points that carry load take that over, with its sum and its moment: q_i (b + D.r_i) (LoadFit). It is
-/// what turns a tool that presses on a curved body where this draws it aside. Without it an ellipsoid beside
-/// the ridge of a lying cylinder has 28 % of error in its torque, 4 % with it (finite elements), and a closed
-/// path on an ellipsoid gives up to 3 % of all work to and fro, 0.6 % with it. On a flat face it is 0.
+/// what turns a tool that presses on a curved body where v has not come to w. On a flat face it is 0.
 template <bool has_friction>
 class RegularGradient {
  public:
@@ -42,21 +40,29 @@ class RegularGradient {
     if (!has_friction) sideways_.resize(capacity);
   }
 
-  /// After a solve with normal loads q and displacements w by them; `given`: by others' loads.
+  /// After a solve with normal loads q and displacements w by them, of which points are put over v already;
+  /// `given`: by others' loads.
   template <Real S>
-  void measure(const PointSystem& system, const float* q, const VectorList& w, const auto& given,
-               const BoundedList<TouchingPoint>& touching, const ToolPoints<S>& tool) noexcept {
+  void measure(const PointSystem& system, const float* q, const VectorList& w, const Vec3<float>& v,
+               const auto& given, const BoundedList<TouchingPoint>& touching,
+               const ToolPoints<S>& tool) noexcept {
     slope_ = tilt_ = mean_ = {}, less_ = 0;
     const LoadFit fit(system, q);
     if (!fit.has_load()) return;
+    const SimdVec3<V> known = each<V>(v);
     slope_ = each(fit.slope([&](std::size_t i) PALPATE_INLINE_LAMBDA {
       const SimdVec3<V> n = system.normals().load(i), all = w.load(i) + given.load(i);
-      if constexpr (!has_friction) return dot(n, all);
+      if constexpr (!has_friction) return dot(n, all - known);
       const SimdVec3<V> m = system.directions().load(i);
       return dot(n, m) * dot(m, all);
     }));
     if constexpr (!has_friction)
-      if (!system.is_flat()) measure_turn(system, q, w, given, touching, tool, fit);
+      if (!system.is_flat()) measure_turn(system, q, w, known, given, touching, tool, fit);
+  }
+  /// The slope along the surface, by which the body turns. With friction 0.
+  [[nodiscard]] Vec3<float> turn() const noexcept {
+    if constexpr (has_friction) return Vec3<float>::Zero();
+    return {slope_.x[0], slope_.y[0], slope_.z[0]};
   }
   /// What points i .. on feel less than q, over q, along n; and along the surface.
   [[nodiscard]] PALPATE_INLINE SimdVec3<V> less(const PointSystem& system, std::size_t i,
@@ -66,11 +72,11 @@ class RegularGradient {
   }
 
  private:
-  void measure_turn(const PointSystem& system, const float* q, const VectorList& w, const auto& given,
-                    const BoundedList<TouchingPoint>& touching, const auto& tool,
+  void measure_turn(const PointSystem& system, const float* q, const VectorList& w, const SimdVec3<V>& known,
+                    const auto& given, const BoundedList<TouchingPoint>& touching, const auto& tool,
                     const LoadFit& fit) noexcept {
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
-      const SimdVec3<V> all = w.load(i) + given.load(i);
+      const SimdVec3<V> all = w.load(i) + given.load(i) - known;
       sideways_.store(i, (V(q + i) * system.turns(i)) * across(system.directions().load(i), all));
     }
     float sum = 0;
@@ -87,7 +93,7 @@ class RegularGradient {
 
   SimdVec3<V> slope_{}, tilt_{}, mean_{};
   V less_{};
-  VectorList sideways_;  // q_i (w_i - (m_i.w_i) m_i) / |N_i|
+  VectorList sideways_;  // q_i (1 - m_i m_i^T) (w_i - v) / |N_i|
 };
 
 /// Of a half-space, which is the same everywhere.

@@ -181,7 +181,7 @@ class ResolvedState {
  private:
   using RegularPart = typename RegularPartOf<Compliance>::type;
   using Strain = std::conditional_t<RegularPart::active, FiniteStrain, LinearStrain>;
-  using Shift = std::conditional_t<RegularPart::active, BodyShift<S, has_friction>, NoBodyShift>;
+  using Shift = std::conditional_t<RegularPart::active, BodyShift<S>, NoBodyShift>;
   using Beside = std::conditional_t<(max_beside > 0), LoadsBeside<S>, NoLoadsBeside>;
   static constexpr float near = 0.05f;   // of the depth; with less gap points are solved for at once
   static constexpr int most_rounds = 3;  // in which points may come in within a tick
@@ -209,7 +209,7 @@ class ResolvedState {
     system_.build();
     for (std::size_t i = 0; i < size(); ++i) {
       if constexpr (Shift::active)
-        system_.depth[i] += touching_[inside_[i]].shifted * system_.direction(i).dot(shift_.v());
+        system_.depth[i] += touching_[inside_[i]].shifted * shift_.deeper(system_.direction(i));
       system_.depth[i] = strain_.factor() * system_.depth[i];
       if constexpr (RegularPart::active) system_.depth[i] -= point(i).held;
       last_.set(i, point(i));
@@ -308,7 +308,7 @@ class ResolvedState {
       const Vec3<float> m = system_.direction_at(at.x, at.m);
       float depth = at.depth / m.dot(at.m);
       const Vec3<float> foot = at.x - depth * m;
-      depth += at.shifted * m.dot(shift_.v());
+      depth += at.shifted * shift_.deeper(m);
       float gap = system_.normal_displacement_at(pressure_.q.data(), foot, m,
                                                  static_cast<float>(tool.area(at.point))) -
                   strain_.factor() * depth + p.held;
@@ -332,10 +332,10 @@ class ResolvedState {
   void finish(const ToolPoints<S>& tool, [[maybe_unused]] float moved) noexcept {
     const Vec3<float> v = shift_.v();
     if constexpr (RegularPart::active) {
-      gradient_.measure(system_, pressure_.q.data(), regular_.response(), beside_, touching_, tool);
+      gradient_.measure(system_, pressure_.q.data(), regular_.response(), v, beside_, touching_, tool);
       regular_.keep(pressure_.q.data());
       if (!regular_.is_left_out())
-        shift_.measure(system_, pressure_.q.data(), regular_.response(), origin_, moved);
+        shift_.measure(system_, pressure_.q.data(), regular_.response(), gradient_.turn(), origin_, moved);
     }
     reaction_.measure(system_, strain_.axes(system_), pressure_.q, result_, gradient_, beside_,
                       regular_.moved());
