@@ -226,7 +226,8 @@ TEST_CASE("where a tool touches at two positions the body is shifted by no more 
   CHECK(shift(down, -down, true) == Vec3<float>::Zero());
   CHECK((shift(down, down, true) - down).norm() <= 2e-9f);
   // A body that turns by 0.2 about a far axis in its surface: it moves on an arc, down by h sin 0.2 and aside
-  // by h (1 - cos 0.2). The first term of that, to its next, 0.2^2/12, and what the sine lacks, 0.2^2/3.
+  // by h (1 - cos 0.2). Each to its first term: the next are 0.2^2/6 and 0.2^2/12 of these; the bounds, half
+  // as much again.
   const float h = 0.025f, turn = 0.2f;
   const Vec3<float> arc =
       shift(Vec3<float>(0, -h * turn, 0), Vec3<float>(0, -h * turn, 0), false, Vec3<float>(turn, 0, 0));
