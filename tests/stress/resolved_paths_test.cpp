@@ -19,8 +19,8 @@
 /// *Energy.* Without friction a closed path of 1,000 ticks and more gives no work: less than 0.5 % of what
 /// goes to and fro on a half-space (points come in up to eight ticks late: with 500 ticks 1 %). On a body
 /// with a response field the regular part's gradients are in force and torque, by regression over the
-/// contact: -0.6 to 0.6 % on an ellipsoid; -6 to 5 % on a bent one, by its tip, which is no wider than the
-/// tools, -2.4 to 1.2 % for the ball. With friction the hand gains nothing.
+/// contact: -0.8 to 0.9 % on an ellipsoid; -4 to 2 % on a bent one, by its tip, which is no wider than the
+/// tools, -2 to 1 % for the ball. With friction the hand gains nothing.
 ///
 /// PALPATE_STRESS in the environment (tests/run --stress): 10,000 paths and more.
 

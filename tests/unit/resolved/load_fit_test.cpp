@@ -50,12 +50,12 @@ V slope_of(const Loaded& contact) {
 
 TEST_CASE("the slope over a contact's loads is the function's, less what few points' own cells take") {
   // Of 2 x 2 points: x has the variance 2/9 of a cell for loads 1 to 2, z 1/4, and a cell's own is 1/12 of
-  // it, times 4 sum q^2/(sum q)^2 >= 1. Rounding of float: 1e-7 of 0.1 over slopes of 1e-3 m, 1e-5; ten such.
+  // it, for 4 sum q^2/(sum q)^2 >= 1. Rounding of float: 1e-7 of 0.1 over slopes of 1e-3 m, 1e-5; ten such.
   const V four = slope_of(Loaded(2)), many = slope_of(Loaded(8));
   CHECK_RELATIVE(four.x(), 3 * (2. / 9) / (2. / 9 + 1. / 12), 1e-4);
   CHECK_RELATIVE(four.z(), -2 * (1. / 4) / (1. / 4 + 1. / 12), 1e-4);
-  // Of 8 x 8: 35/9 and 21/4 of it, and 4 sum q^2/(sum q)^2 = 4 * 204/(8 * 36^2).
-  const double own = 4 * 204. / (8 * 36 * 36) / 12;
+  // Of 8 x 8: 35/9 and 21/4 of it, and 4 sum q^2/(sum q)^2 = 4 * 204/(8 * 36^2), squared.
+  const double own = std::pow(4 * 204. / (8 * 36 * 36), 2) / 12;
   CHECK_RELATIVE(many.x(), 3 * (35. / 9) / (35. / 9 + own), 1e-4);
   CHECK_RELATIVE(many.z(), -2 * 5.25 / (5.25 + own), 1e-4);
   for (const V& v : {four, many}) CHECK(std::abs(v.y()) <= 1e-4);

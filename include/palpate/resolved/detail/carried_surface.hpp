@@ -101,6 +101,7 @@ class CarriedSurface {
 /// Without friction: nowhere.
 struct StillSurface {
   explicit StillSurface(std::size_t /*capacity*/) {}
+  static void clear(const auto& /*origin*/) noexcept {}
   [[nodiscard]] static int most() noexcept { return 0; }
   [[nodiscard]] static const auto& before(const auto& x) noexcept { return x; }
 };

@@ -2,7 +2,7 @@
 #pragma once
 
 /// @file Second order in depth of a resolved contact: by how much finite strain softens the near field, and
-/// what it makes of the limit of friction.
+/// stiffens it across.
 
 #include <palpate/core/scalar.hpp>
 #include <palpate/core/simd_math.hpp>
@@ -38,48 +38,24 @@ namespace palpate::detail {
 /// body resists a turn as the linear one: only the sum of the loads counts. m, the mean direction by
 /// load (0 where a tool presses from two sides), a, p: of the last tick.
 ///
-/// Where friction holds the body the load moves with it: to W it acts at x + v,
+/// Where friction holds the body the load moves with it, and all the while it grew was half way there on the
+/// mean: to W it acts at x + v,
 ///
-///     v = (couple_slid w_t - couple_sunk w_n F_t/F_n)/(1 + (w/2a)^4)
+///     v = 1/2 (w_t - w_n F_t/F_n)/(1 + (w/2a)^4)
 ///
-/// v F_n is a bonded patch's bending couple, whose range w = 2 a is; w: regular displacement, mean by load,
-/// others' loads included.
-///
-/// Where a tool slides, friction takes mu p per area of its surface and length of the body's surface that
-/// passes it. Of a slope g between the tool's normal and m both are larger than seen along m, by
-/// sqrt(1 + g^2) and sqrt(1 + g^2/2), the mean over directions. And p has pressed together what passes, by
-/// (1 - 2 nu) p/(4 mu) on a half-space. So the limit of a point's tractions is mu s q,
-///
-///     s = sqrt(1 + g^2) sqrt(1 + g^2/2) (1 - (1 - 2 nu) pi q/A),   g <= 3/4, the last factor >= 1/2
-///
-/// What is steeper is a tool's rim, round which nothing slides; 3/4 is chosen on finite elements.
-///
-/// What of the tool is slanted presses along its own normal. Of the part of that across m, q g, the stress
-/// along the surface holds some, for the surface has turned with the tool: all where it is as large as the
-/// pressure, as at nu = 1/2. So what a point bears without friction, the axis of its cone, is
-///
-///     c = m + lean (g - mean of g by load),   lean = min(2 (1 - 2 nu), 1)
-///
-/// chosen on finite elements: these want 0.7 to 1 at nu = 0.3, and 0 at 1/2. Without the mean a tool that
-/// slides would be pushed aside, though the pressures on its sides balance.
+/// v F_n is the couple 1/2 w x F across the surface, whose range w = 2 a is (fitted on a bonded patch); w:
+/// regular displacement, mean by load, others' loads included.
 class FiniteStrain {
  public:
   using V = VectorList::V;
   static constexpr bool active = true;
 
-  /// `points` at most whose cones lean: 0 without friction.
-  FiniteStrain(double nu, std::size_t points)
+  explicit FiniteStrain(double nu)
       : k_(static_cast<float>(SecondOrder{}.at(nu).sphere_softening)),
-        slid_(static_cast<float>(SecondOrder{}.at(nu).couple_slid)),
-        sunk_(static_cast<float>(SecondOrder{}.at(nu).couple_sunk)),
         across_(static_cast<float>(SecondOrder{}.at(nu).drag * (2 - nu) / 8)),
         compliance_across_(static_cast<float>(std::numbers::pi * (2 - nu) / 2)),
         root_of_strain_(
-            static_cast<float>(std::numbers::pi / 2 * (4. / 3) * 2 * std::numbers::pi * (1 - nu))),
-        strain_across_(static_cast<float>(-(1 - 2 * nu) * std::numbers::pi)),
-        lean_(static_cast<float>((std::min)(2 * (1 - 2 * nu), 1.))) {
-    axes_.resize(AlignedList<float>::padded(points));
-  }
+            static_cast<float>(std::numbers::pi / 2 * (4. / 3) * 2 * std::numbers::pi * (1 - nu))) {}
 
   void forget() noexcept {
     softening_ = 0, factor_ = 1;
@@ -117,7 +93,7 @@ class FiniteStrain {
     common_ = compliance_across_ / a * stiffened;
     stiffened_ = stiffened * F;
     const float s = w_mean.squaredNorm() / (4 * a * a);
-    shift_ = across * (slid_ * w_mean - sunk_ * m.dot(w_mean) * F) / (1 + s * s);
+    shift_ = across * (w_mean - m.dot(w_mean) * F) / (2 + 2 * s * s);
   }
   /// u -= G sum_j P_j.
   void add(const PointSystem& system, const VectorList& P, VectorList& u) const noexcept {
@@ -132,35 +108,6 @@ class FiniteStrain {
   [[nodiscard]] const Vec3<float>& shift() const noexcept { return shift_; }
   /// Of the depths.
   [[nodiscard]] float factor() const noexcept { return factor_; }
-  /// s of points i .. of the tool's unit outward normals, with the normal loads q.
-  [[nodiscard]] PALPATE_INLINE V limit_per_mu(const PointSystem& system, std::size_t i,
-                                              const SimdVec3<V>& outward, const V& q) const noexcept {
-    const V area = V(1.f) / clamp(dot(outward, system.directions().load(i)), rim, 1.f),
-            stretch = sqrt(V(0.5f) * (V(1.f) + area * area)),
-            strain = (max)(V(strain_across_) * q / V(system.areas() + i), V(-0.5f));
-    return area * stretch * (V(1.f) + strain);
-  }
-  /// Cones of all points, by the tool's unit outward normals, with the loads P.
-  void lean(const PointSystem& system, const VectorList& outward, const VectorList& P) noexcept {
-    SimdVec3<V> sum{};
-    V loads{};
-    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
-      const SimdVec3<V> m = system.directions().load(i), o = outward.load(i);
-      const SimdVec3<V> slope = V(1.f) / (max)(dot(o, m), V(rim)) * across(m, o);
-      const V q = (max)(dot(m, P.load(i)), V(0.f)),
-              most = V(rim_slope) * inverse_sqrt((max)(dot(slope, slope), V(tiny)));
-      const SimdVec3<V> g = (min)(most, V(1.f)) * slope;
-      axes_.store(i, g);
-      sum += q * g, loads += q;
-    }
-    const SimdVec3<V> mean = each<V>(sum_of(sum) / (std::max)(reduce(loads), tiny));
-    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
-      const SimdVec3<V> m = system.directions().load(i);
-      axes_.store(i, m + V(lean_) * across(m, axes_.load(i) - mean));
-    }
-  }
-  /// c, after lean().
-  [[nodiscard]] const VectorList& axes(const PointSystem& /*system*/) const noexcept { return axes_; }
   /// What the near field of a load is drawn with beside it, q along m: k e more, and of all loads across m
   /// kappa/(1 + kappa) less, shared as q is [m^2].
   [[nodiscard]] Vec3<float> beside(const Vec3<float>& m, float q) const noexcept {
@@ -168,13 +115,8 @@ class FiniteStrain {
   }
 
  private:
-  static constexpr float rim_slope = 0.75f, rim = 0.8f;  // and its cosine
-  static constexpr float tiny = (std::numeric_limits<float>::min)();
-
-  float k_, slid_, sunk_, across_, compliance_across_;  // the last two: kappa (1 + beta^2)/beta; c a
-  float root_of_strain_, strain_across_;                // p/E' = 2 pi (1 - nu) q/A, p/(4 mu) = pi q/A
-  float lean_;
-  VectorList axes_;
+  float k_, across_, compliance_across_;  // the last two: kappa (1 + beta^2)/beta; c a
+  float root_of_strain_;                  // p/E' = 2 pi (1 - nu) q/A
   float softening_ = 0, factor_ = 1;
   Mat3<float> common_ = Mat3<float>::Zero();     // G
   Vec3<float> stiffened_ = Vec3<float>::Zero();  // what the near field lacks, per normal load
@@ -184,15 +126,11 @@ class FiniteStrain {
 /// Of a body whose response is linear.
 struct LinearStrain {
   static constexpr bool active = false;
-  LinearStrain(double /*nu*/, std::size_t /*points*/) {}
+  explicit LinearStrain(double /*nu*/) {}
   [[nodiscard]] static Mat3<float> common() noexcept { return Mat3<float>::Zero(); }
   [[nodiscard]] static Vec3<float> beside(const Vec3<float>&, float) noexcept { return Vec3<float>::Zero(); }
   [[nodiscard]] static Vec3<float> shift() noexcept { return Vec3<float>::Zero(); }
   [[nodiscard]] static constexpr float factor() noexcept { return 1; }
-  [[nodiscard]] static VectorList::V limit_per_mu(const auto&...) noexcept { return VectorList::V(1.f); }
-  [[nodiscard]] static const VectorList& axes(const PointSystem& system) noexcept {
-    return system.directions();
-  }
 };
 
 }  // namespace palpate::detail

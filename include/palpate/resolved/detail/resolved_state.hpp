@@ -13,6 +13,7 @@
 #include <palpate/resolved/detail/carried_surface.hpp>
 #include <palpate/resolved/detail/contact_area.hpp>
 #include <palpate/resolved/detail/finite_strain.hpp>
+#include <palpate/resolved/detail/friction_cones.hpp>
 #include <palpate/resolved/detail/friction_problem.hpp>
 #include <palpate/resolved/detail/loads_beside.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
@@ -51,11 +52,12 @@ class ResolvedState {
         regular_(body, capacity),
         beside_(max_beside, capacity, static_cast<float>(1 - 2 * body.nu())),
         carried_(capacity),
-        strain_(body.nu(), has_friction ? capacity : 0),
+        strain_(body.nu()),
+        cones_(body.nu(), capacity),
         gradient_(capacity) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
     last_.resize(padded), pressure_.resize(padded), result_.resize(padded);
-    reaction_.resize(padded), outward_.resize(padded);
+    reaction_.resize(padded);
   }
 
   void reset() noexcept {
@@ -70,7 +72,7 @@ class ResolvedState {
   void loads(auto& out) const noexcept {
     out.clear();
     for (std::size_t i = 0, k = 0; i < size() && k < contacts_.size() && !out.full(); ++i) {
-      const Point& p = points_[touching_[inside_[i]].point];
+      const PointMemory& p = points_[touching_[inside_[i]].point];
       if (!p.loaded) continue;
       const auto in_S = [](const Vec3<float>& a) -> Vec3<S> { return a.template cast<S>(); };
       const Vec3<float> m = system_.direction(i);
@@ -135,7 +137,7 @@ class ResolvedState {
       has_room_ = !touching_.full();
       if (!has_room_) continue;
       touching_.push_back(leaf.point(k, begin + k, system_.groups() - 1, shifted));
-      Point& p = points_[begin + k];
+      PointMemory& p = points_[begin + k];
       if (p.tick + 1 != tick_) p = {};
       p.tick = tick_;
     }
@@ -152,13 +154,13 @@ class ResolvedState {
     const Vec3<S>& x = tool.point(touching_[0].point);
     const float moved = first ? 0.f : static_cast<float>((X * x - before * x).norm());
     if constexpr (has_friction)  // those that stick go with the tool
-      for (const Touching& c : touching_)
-        if (Point& p = points_[c.point]; p.loaded)
+      for (const TouchingPoint& c : touching_)
+        if (PointMemory& p = points_[c.point]; p.loaded)
           p.anchor += Vec3<S>(X * tool.point(c.point) - before * tool.point(c.point)).template cast<float>();
     // First those that carry load or came near to it.
     inside_.clear();
     for (std::uint32_t c = 0; c < touching_.size(); ++c) {
-      const Point& p = points_[touching_[c].point];
+      const PointMemory& p = points_[touching_[c].point];
       if (p.loaded || p.sunk - touching_[c].depth < near * system_.deepest()) inside_.push_back(c);
     }
     bool left_out = false;
@@ -181,29 +183,29 @@ class ResolvedState {
  private:
   using RegularPart = typename RegularPartOf<Compliance>::type;
   using Strain = std::conditional_t<RegularPart::active, FiniteStrain, LinearStrain>;
+  using Cones = std::conditional_t<has_friction && Strain::active, FrictionCones, StraightCones>;
   using Shift = std::conditional_t<RegularPart::active, BodyShift<S>, NoBodyShift>;
   using Beside = std::conditional_t<(max_beside > 0), LoadsBeside<S>, NoLoadsBeside>;
   static constexpr float near = 0.05f;   // of the depth; with less gap points are solved for at once
   static constexpr int most_rounds = 3;  // in which points may come in within a tick
   using V = VectorList::V;
-  using Point = PointMemory;
-  using Touching = TouchingPoint;
 
   [[nodiscard]] std::size_t size() const noexcept { return inside_.size(); }
   void forget() noexcept {
-    slides_ = false, strength_ = {}, shift_.forget(), beside_.drop();
-    if constexpr (has_friction) result_.step = 0, carried_.clear(origin_);
+    slides_ = false, strength_ = {}, carried_.clear(origin_);
+    shift_.forget(), gradient_.forget(), beside_.drop();
+    if constexpr (has_friction) result_.step = 0;
     if constexpr (Strain::active) strain_.forget(), regular_.take_in();
   }
   // Where a load at `foot` acts, seen from afar.
   [[nodiscard]] Vec3<double> acts_at(const Vec3<float>& foot) const noexcept {
     return (origin_ + (foot + strain_.shift()).template cast<S>()).template cast<double>();
   }
-  [[nodiscard]] Point& point(std::size_t i) noexcept { return points_[touching_[inside_[i]].point]; }
+  [[nodiscard]] PointMemory& point(std::size_t i) noexcept { return points_[touching_[inside_[i]].point]; }
   void build(const Force& force, const ToolPoints<S>& tool) noexcept {
     system_.clear();
     for (const std::uint32_t c : inside_) {
-      const Touching& at = touching_[c];
+      const TouchingPoint& at = touching_[c];
       system_.add(at.x, at.m, at.depth, static_cast<float>(tool.area(at.point)));
     }
     system_.build();
@@ -213,7 +215,7 @@ class ResolvedState {
       system_.depth[i] = strain_.factor() * system_.depth[i];
       if constexpr (RegularPart::active) system_.depth[i] -= point(i).held;
       last_.set(i, point(i));
-      if constexpr (has_friction && Strain::active) outward_.set(i, touching_[inside_[i]].outward);
+      if constexpr (has_friction && Strain::active) cones_.outward.set(i, touching_[inside_[i]].outward);
     }
     for (std::size_t i = size(); i < system_.stride(); ++i) last_.set(i, {});
     if constexpr (RegularPart::active) {
@@ -232,7 +234,7 @@ class ResolvedState {
                              [this](const float* q, float* u) noexcept { displace(q, u); });
     else
       return solve_loads(
-          size(), result_, system_.directions(), strain_.axes(system_), system_.depth.data(),
+          size(), result_, system_.directions(), cones_.axes(system_), system_.depth.data(),
           {system_.flexible_step(), system_.tangential_share(),
            system_.common() + regular_.common() - strain_.common()},
           tolerance, iterations, [this](const VectorList& P, VectorList& u) noexcept { displace(P, u); },
@@ -272,20 +274,17 @@ class ResolvedState {
     if constexpr (has_friction && Strain::active) strain_.add(system_, loads, u);
   }
   void begin_loads(float share) noexcept {
-    const SimdVec3<V> moved = each<V>(regular_.moved());
     for (std::size_t i = 0; i < system_.stride(); i += V::size()) {
-      const SimdVec3<V> P = last_.load.load(i) + V(share) * last_.load_step.load(i),
-                        m = system_.directions().load(i);
-      const V q = (max)(dot(m, P), V(0.f));
-      if constexpr (!has_friction) q.copy_to(&pressure_.q[i]);
-      if constexpr (has_friction) {
+      const SimdVec3<V> P = last_.load.load(i) + V(share) * last_.load_step.load(i);
+      if constexpr (!has_friction) {
+        (max)(dot(system_.directions().load(i), P), V(0.f)).copy_to(&pressure_.q[i]);
+      } else {
         result_.load.store(i, P);
-        result_.anchor.store(i, last_.anchor.load(i) - beside_.load(i) - moved);
+        result_.anchor.store(i, last_.anchor.load(i) - beside_.load(i) - each<V>(regular_.moved()));
         V(&last_.loaded[i]).copy_to(&result_.anchored[i]);
-        strain_.limit_per_mu(system_, i, outward_.load(i), q).copy_to(&result_.per_mu[i]);
       }
     }
-    if constexpr (has_friction && Strain::active) strain_.lean(system_, outward_, result_.load);
+    if constexpr (has_friction) cones_.place(system_, gradient_.slope(), result_);
   }
 
   /// Takes in points that the surface has not given way to, or holds them where they are: w was `left_out` in
@@ -301,8 +300,8 @@ class ResolvedState {
         ++next;
         continue;
       }
-      const Touching& at = touching_[c];
-      Point& p = points_[at.point];
+      const TouchingPoint& at = touching_[c];
+      PointMemory& p = points_[at.point];
       // Gaps change little in a tick: each is looked at in every eighth, but where no other point is left.
       if ((tick_ + at.point) % 8 != 0 && !none_loaded && !left_out) continue;
       const Vec3<float> m = system_.direction_at(at.x, at.m);
@@ -335,14 +334,15 @@ class ResolvedState {
       gradient_.measure(system_, pressure_.q.data(), regular_.response(), v, beside_, touching_, tool);
       regular_.keep(pressure_.q.data());
       if (!regular_.is_left_out())
-        shift_.measure(system_, pressure_.q.data(), regular_.response(), gradient_.turn(), origin_, moved);
+        shift_.measure(system_, pressure_.q.data(), regular_.response(), gradient_.arc(), origin_, moved);
     }
-    reaction_.measure(system_, strain_.axes(system_), pressure_.q, result_, gradient_, beside_,
-                      regular_.moved());
-    if constexpr (has_friction) carried_.clear(origin_);
+    if constexpr (!has_friction) reaction_.measure(system_, pressure_.q, gradient_);
+    if constexpr (has_friction)
+      reaction_.measure(system_, cones_.axes(system_), pressure_.q, result_, beside_, regular_.moved());
+    carried_.clear(origin_);
     for (std::size_t i = 0; i < size(); ++i) {
-      const Touching& at = touching_[inside_[i]];
-      Point& p = point(i);
+      const TouchingPoint& at = touching_[inside_[i]];
+      PointMemory& p = point(i);
       const float q = pressure_.q[i];
       p.go_on(result_.load[i], result_.u[i]);
       p.sunk = pressure_.r[i] + at.depth;
@@ -368,21 +368,21 @@ class ResolvedState {
     }
   }
 
-  std::vector<Point> points_;
-  BoundedList<Touching> touching_;
+  std::vector<PointMemory> points_;
+  BoundedList<TouchingPoint> touching_;
   BoundedList<std::uint32_t> inside_;  // of touching_, rising: those that are solved for
   BoundedList<PointContact<S>> contacts_;
   PointSystem system_;
   MemoryLists last_;  // of those that are solved for
   Unloaded unloaded_;
   PressureLists pressure_;
-  typename Reaction<has_friction>::Loads result_;
+  std::conditional_t<has_friction, FrictionLists, LoadLists> result_;
   Reaction<has_friction> reaction_;
-  VectorList outward_;  // the tool's normals
   PALPATE_NO_UNIQUE_ADDRESS RegularPart regular_;
   PALPATE_NO_UNIQUE_ADDRESS Beside beside_;
   PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<has_friction, CarriedSurface<S>, StillSurface> carried_;
   PALPATE_NO_UNIQUE_ADDRESS Strain strain_;
+  PALPATE_NO_UNIQUE_ADDRESS Cones cones_;
   PALPATE_NO_UNIQUE_ADDRESS GradientOf<RegularPart, has_friction> gradient_;
   PALPATE_NO_UNIQUE_ADDRESS Shift shift_;
   Residual residual_;

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file The cones of friction at a contact's points: their axes, and how wide they are.
+
+#include <palpate/core/aligned_list.hpp>
+#include <palpate/core/simd_math.hpp>
+#include <palpate/resolved/detail/friction_problem.hpp>
+#include <palpate/resolved/detail/point_system.hpp>
+#include <palpate/resolved/detail/vector_list.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+
+namespace palpate::detail {
+
+/// The load of a point is P = q c + t, q = m.P, |t| <= mu s q. The axis c is what it bears without friction:
+///
+///     c = m - g + lean (h - mean of h by load)
+///
+/// m: the direction of pressing. g, across m: slope of the regular part, by which the surface has turned from
+/// m (regular_gradient.hpp). h: slope of the tool's own normal to m.
+///
+/// What of the tool is slanted presses along its own normal. Of the part of that across m, q h, the stress
+/// along the surface holds some, for the surface has turned with the tool: all where it is as large as the
+/// pressure, as at nu = 1/2. So lean = min(2 (1 - 2 nu), 1), chosen on finite elements: these want 0.7 to 1
+/// at nu = 0.3, and 0 at 1/2. Without the mean a tool that slides would be pushed aside, though the pressures
+/// on its sides balance.
+///
+/// Where a tool slides, friction takes mu p per area of its surface and length of the body's surface that
+/// passes it. Of a slope h both are larger than seen along m, by sqrt(1 + h^2) and sqrt(1 + h^2/2), the mean
+/// over directions. And p has pressed together what passes, by (1 - 2 nu) p/(4 mu) on a half-space:
+///
+///     s = sqrt(1 + h^2) sqrt(1 + h^2/2) (1 - (1 - 2 nu) pi q/A),   h <= 3/4, the last factor >= 1/2
+///
+/// What is steeper is a tool's rim, round which nothing slides; 3/4 is chosen on finite elements.
+class FrictionCones {
+ public:
+  using V = VectorList::V;
+  FrictionCones(double nu, std::size_t points)
+      : lean_(static_cast<float>((std::min)(2 * (1 - 2 * nu), 1.))),
+        strain_across_(static_cast<float>(-(1 - 2 * nu) * std::numbers::pi)) {
+    axes_.resize(AlignedList<float>::padded(points));
+    outward.resize(AlignedList<float>::padded(points));
+  }
+
+  VectorList outward;  ///< the tool's unit normals at the points
+
+  /// Axes, and s to `lists.per_mu`, for the loads `lists.load`.
+  void place(const PointSystem& system, const Vec3<float>& g, FrictionLists& lists) noexcept {
+    const SimdVec3<V> mean = V(lean_) * each<V>(mean_slope(system, lists)) + each<V>(g);
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+      const SimdVec3<V> m = system.directions().load(i);
+      limit_per_mu(system, i, (max)(dot(m, lists.load.load(i)), V(0.f))).copy_to(&lists.per_mu[i]);
+      axes_.store(i, m + across(m, V(lean_) * axes_.load(i) - mean));
+    }
+  }
+  /// c
+  [[nodiscard]] const VectorList& axes(const PointSystem& /*system*/) const noexcept { return axes_; }
+
+ private:
+  static constexpr float rim_slope = 0.75f, rim = 0.8f;  // and its cosine
+  static constexpr float tiny = (std::numeric_limits<float>::min)();
+
+  // h to the axes. Returns its mean by load.
+  [[nodiscard]] Vec3<float> mean_slope(const PointSystem& system, const FrictionLists& lists) noexcept {
+    SimdVec3<V> sum{};
+    V loads{};
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+      const SimdVec3<V> m = system.directions().load(i), o = outward.load(i);
+      const SimdVec3<V> slope = V(1.f) / (max)(dot(o, m), V(rim)) * across(m, o);
+      const V q = (max)(dot(m, lists.load.load(i)), V(0.f)),
+              most = V(rim_slope) * inverse_sqrt((max)(dot(slope, slope), V(tiny)));
+      const SimdVec3<V> h = (min)(most, V(1.f)) * slope;
+      axes_.store(i, h);
+      sum += q * h, loads += q;
+    }
+    return sum_of(sum) / (std::max)(reduce(loads), tiny);
+  }
+  // s of points i .. with the normal loads q.
+  [[nodiscard]] PALPATE_INLINE V limit_per_mu(const PointSystem& system, std::size_t i,
+                                              const V& q) const noexcept {
+    const V area = V(1.f) / clamp(dot(outward.load(i), system.directions().load(i)), rim, 1.f),
+            stretch = sqrt(V(0.5f) * (V(1.f) + area * area)),
+            strain = (max)(V(strain_across_) * q / V(system.areas() + i), V(-0.5f));
+    return area * stretch * (V(1.f) + strain);
+  }
+
+  float lean_, strain_across_;  // p/(4 mu) = pi q/A
+  VectorList axes_;
+};
+
+/// Of a body whose response is linear, about the directions of pressing; and without friction.
+struct StraightCones {
+  StraightCones(double /*nu*/, std::size_t /*points*/) {}
+  static void place(const PointSystem& system, const Vec3<float>& /*g*/, FrictionLists& lists) noexcept {
+    std::fill_n(lists.per_mu.data(), system.stride(), 1.f);
+  }
+  [[nodiscard]] static const VectorList& axes(const PointSystem& system) noexcept {
+    return system.directions();
+  }
+};
+
+}  // namespace palpate::detail
