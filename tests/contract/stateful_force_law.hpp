@@ -15,23 +15,100 @@
 #include <palpate/law/force/concept.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 #include <limits>
 #include <random>
+#include <span>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 namespace palpate::test {
 
-template <class Example, Real S>
-struct StatefulForceLawSuite {
-  using Law = decltype(Example::template make<S>());
-  using Exact = decltype(Example::template make<long double>());
-  using State = typename Law::State;
-  static_assert(StatefulForceLaw<Law> && StatefulForceLaw<Exact>);
+/// A force law with memory of whatever type, so that the suite is compiled once for all of them.
+template <Real S>
+struct AnyStatefulLaw {
+  /// A state of whatever type, as a value.
+  struct State {
+    alignas(long double) std::array<std::byte, 256> bytes{};
+  };
+  struct Part {
+    State state;
+    S depth, share;
+  };
+  virtual ~AnyStatefulLaw() = default;
+  [[nodiscard]] virtual S force(S depth) const = 0;
+  [[nodiscard]] virtual S stiffness(S depth) const = 0;
+  [[nodiscard]] virtual S energy(S depth) const = 0;
+  [[nodiscard]] virtual S depth(S force) const = 0;
+  [[nodiscard]] virtual State fresh() const = 0;
+  [[nodiscard]] virtual State advance(const State& state, S depth, S dt) const = 0;
+  [[nodiscard]] virtual S force(S depth, const State& state) const = 0;
+  [[nodiscard]] virtual S stiffness(S depth, const State& state) const = 0;
+  [[nodiscard]] virtual S energy(S depth, const State& state) const = 0;
+  [[nodiscard]] virtual S depth(S force, const State& state) const = 0;
+  [[nodiscard]] virtual bool has_carried() const = 0;
+  /// Of two parts. Precondition: has_carried().
+  [[nodiscard]] virtual State carried(const std::array<Part, 2>& parts, S depth) const = 0;
+};
 
-  Law law = Example::template make<S>();
-  Exact exact = Example::template make<long double>();
-  static constexpr S most = static_cast<S>(Example::depth), time = static_cast<S>(Example::time);
+template <StatefulForceLaw Law, Real S = typename Law::Scalar>
+class StatefulLaw final : public AnyStatefulLaw<S> {
+ public:
+  using State = typename AnyStatefulLaw<S>::State;
+  explicit StatefulLaw(Law law) : law_(std::move(law)) {}
+  S force(S depth) const override { return law_.force(depth); }
+  S stiffness(S depth) const override { return law_.stiffness(depth); }
+  S energy(S depth) const override { return law_.energy(depth); }
+  S depth(S force) const override { return law_.depth(force); }
+  State fresh() const override { return wrapped({}); }
+  State advance(const State& state, S depth, S dt) const override {
+    return wrapped(law_.advance(own(state), depth, dt));
+  }
+  S force(S depth, const State& state) const override { return law_.force(depth, own(state)); }
+  S stiffness(S depth, const State& state) const override { return law_.stiffness(depth, own(state)); }
+  S energy(S depth, const State& state) const override { return law_.energy(depth, own(state)); }
+  S depth(S force, const State& state) const override { return law_.depth(force, own(state)); }
+  bool has_carried() const override { return HasCarried<Law>; }
+  State carried([[maybe_unused]] const std::array<typename AnyStatefulLaw<S>::Part, 2>& parts,
+                [[maybe_unused]] S depth) const override {
+    if constexpr (HasCarried<Law>) {
+      const CarriedState<Law> of[] = {{own(parts[0].state), parts[0].depth, parts[0].share},
+                                      {own(parts[1].state), parts[1].depth, parts[1].share}};
+      return wrapped(law_.carried(of, depth));
+    }
+    return {};
+  }
+
+ private:
+  using Own = typename Law::State;
+  static_assert(std::is_trivially_copyable_v<Own> && sizeof(Own) <= sizeof(State));
+  static State wrapped(const Own& state) {
+    State out;
+    std::memcpy(out.bytes.data(), &state, sizeof state);
+    return out;
+  }
+  static Own own(const State& state) {
+    Own out{};
+    std::memcpy(&out, state.bytes.data(), sizeof out);
+    return out;
+  }
+  Law law_;
+};
+
+/// The suite, of a law and the same one in long double.
+template <Real S>
+struct StatefulForceLawSuite {
+  using State = typename AnyStatefulLaw<S>::State;
+
+  const AnyStatefulLaw<S>& law;
+  const AnyStatefulLaw<long double>& exact;
+  double whole_depth, whole_time;  // of the example
+  bool curved;
+  S most = static_cast<S>(whole_depth), time = static_cast<S>(whole_time);
 
   void run() const {
     never_touched();
@@ -48,7 +125,7 @@ struct StatefulForceLawSuite {
   struct Corner {
     double depth, time;  // [m] reached after so long [s]
   };
-  [[nodiscard]] static std::vector<Corner> path(unsigned seed, int corners) {
+  [[nodiscard]] std::vector<Corner> path(unsigned seed, int corners) const {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> share(0.0, 1.0);
     std::vector<Corner> all;
@@ -59,18 +136,18 @@ struct StatefulForceLawSuite {
       // all.
       if (kind > 0.25 && kind < 0.42) {
       } else {
-        last = kind < 0.25 ? 0 : Example::depth * share(random);
+        last = kind < 0.25 ? 0 : whole_depth * share(random);
       }
       const double reached = static_cast<double>(static_cast<float>(last));
       // From ticks far shorter than the law's time to ticks far longer.
-      all.push_back({reached, Example::time * std::pow(10.0, -2 + 3 * share(random))});
+      all.push_back({reached, whole_time * std::pow(10.0, -2 + 3 * share(random))});
       last = reached;
     }
     return all;
   }
 
   void never_touched() const {
-    const State fresh{};
+    const State fresh = law.fresh();
     for (const S depth : {S(0), -S(0), S(-1e-3), -std::numeric_limits<S>::infinity()}) {
       CHECK(law.force(depth, fresh) == S(0));
       CHECK(law.stiffness(depth, fresh) == S(0));
@@ -89,7 +166,7 @@ struct StatefulForceLawSuite {
   // After anything at all, a good depth gives a finite force, and no depth none.
   void bad_input() const {
     const S nan = std::numeric_limits<S>::quiet_NaN(), infinity = std::numeric_limits<S>::infinity();
-    State state = law.advance({}, most, time);
+    State state = law.advance(law.fresh(), most, time);
     for (const S depth : {nan, infinity, -infinity, S(0), most}) {
       for (const S dt : {nan, infinity, -infinity, S(0), S(-1), (std::numeric_limits<S>::max)(), time}) {
         state = law.advance(state, depth, dt);
@@ -109,7 +186,7 @@ struct StatefulForceLawSuite {
     std::vector<S> deep;
     for (int e = -20; e < L::max_exponent; ++e) deep.push_back(std::ldexp(S(1), e));
     deep.insert(deep.end(), {(L::max)() / S(2), (L::max)(), L::infinity()});
-    const State pressed = law.advance({}, most, time);
+    const State pressed = law.advance(law.fresh(), most, time);
     S before = S(0), energy = S(0), reached = S(0);
     int bad = 0;  // a NaN makes every comparison false
     const auto numbers = [&](const State& state) {
@@ -128,13 +205,10 @@ struct StatefulForceLawSuite {
       numbers(after);
       after = law.advance(after, most, time);
       numbers(after);
-      if constexpr (HasCarried<Law>) {
-        for (const S from : {most, x})
-          for (const S to : {L::denorm_min(), most, x}) {
-            const CarriedState<Law> parts[] = {{after, from, S(0.5)}, {pressed, L::denorm_min(), S(0.5)}};
-            numbers(law.carried(parts, to));
-          }
-      }
+      if (!law.has_carried()) continue;
+      for (const S from : {most, x})
+        for (const S to : {L::denorm_min(), most, x})
+          numbers(law.carried({{{after, from, S(0.5)}, {pressed, L::denorm_min(), S(0.5)}}}, to));
     }
     CHECK(bad == 0);
   }
@@ -143,8 +217,8 @@ struct StatefulForceLawSuite {
   // Along a path: F against long double; the tangent is its derivative and the energy its integral at a
   // constant state; the inverse; no force at the depth of no force and above.
   void queries_of_a_state() const {
-    State state{};
-    typename Exact::State reference{};
+    State state = law.fresh();
+    auto reference = exact.fresh();
     // Each tick rounds a few times what the next one starts from.
     const long double unit = ulps<S>(2000);
     const long double full = exact.force(static_cast<long double>(most));
@@ -177,7 +251,7 @@ struct StatefulForceLawSuite {
   }
 
   void without_contact_only_time_counts() const {
-    const State before = law.advance(law.advance({}, most, time), most, time);
+    const State before = law.advance(law.advance(law.fresh(), most, time), most, time);
     const State at_zero = law.advance(before, S(0), time);
     for (const S depth :
          {-S(0), S(-1), std::numeric_limits<S>::quiet_NaN(), -std::numeric_limits<S>::infinity()}) {
@@ -193,7 +267,7 @@ struct StatefulForceLawSuite {
     constexpr int steps = 400;
     double least = 1, gross = 0, store = 0;
     for (unsigned seed = 0; seed < 20; ++seed) {
-      State state{};
+      State state = law.fresh();
       S depth = S(0), force = S(0);
       double work = 0, energy = 0;
       for (const Corner& corner : path(seed, 60)) {
@@ -225,7 +299,7 @@ struct StatefulForceLawSuite {
   // A tick is as good as two of half the time: where the law's force runs straight, to rounding; else within
   // what its middle lies off that line, since no part of it counts more than once.
   void halved() const {
-    State state{};
+    State state = law.fresh();
     S last = S(0);
     bool touching = true;  // a fresh body is met where it begins
     int compared = 0;
@@ -241,7 +315,7 @@ struct StatefulForceLawSuite {
           law.force(depth, whole) > S(0)) {  // what meets or loses contact does so within a tick
         const S sagitta = std::abs(law.force(middle) - (law.force(last) + law.force(depth)) / S(2));
         CHECK_ABSOLUTE(law.force(depth, half), law.force(depth, whole),
-                       (Example::curved ? static_cast<long double>(sagitta) : 0) + ulps<S>(64) * full);
+                       (curved ? static_cast<long double>(sagitta) : 0) + ulps<S>(64) * full);
         ++compared;
       }
       touching = law.force(depth, whole) > S(0);
@@ -254,7 +328,7 @@ struct StatefulForceLawSuite {
   // A path cut into steps of 1e-4: no step of F is above the law's greatest stiffness times the motion, and
   // what time does in a tick.
   void continuous() const {
-    State state{};
+    State state = law.fresh();
     S depth = S(0), force = S(0), worst = S(0);
     const S stiffest = (std::max)(law.stiffness(most), law.force(most) / most);
     for (const Corner& corner : path(11, 100)) {
@@ -270,5 +344,12 @@ struct StatefulForceLawSuite {
     CHECK(worst <= law.force(most) * (S(1e-4) + static_cast<S>(ulps<S>(200))));
   }
 };
+
+template <class Example, Real S>
+void check_stateful_force_law() {
+  const StatefulLaw law(Example::template make<S>());
+  const StatefulLaw exact(Example::template make<long double>());
+  StatefulForceLawSuite<S>{law, exact, Example::depth, Example::time, Example::curved}.run();
+}
 
 }  // namespace palpate::test

@@ -74,7 +74,7 @@ struct Case {
 };
 
 TEST_CASE_TEMPLATE_DEFINE("force law with memory", C, stateful_force_law) {
-  test::StatefulForceLawSuite<typename C::Example, typename C::Scalar>{}.run();
+  test::check_stateful_force_law<typename C::Example, typename C::Scalar>();
 }
 
 #define PALPATE_STATEFUL_SUITE(...) \

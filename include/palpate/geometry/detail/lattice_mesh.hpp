@@ -12,7 +12,12 @@
 #include <palpate/geometry/concept.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 namespace palpate::detail {
 
@@ -54,13 +59,12 @@ inline void require_vertices(std::size_t vertices, const char* where) {
   return cells(coarse);
 }
 
-/// Mesh of the image of the cube's surface under `map`, a homeomorphism that keeps orientation.
-template <Real S, class Map>
-[[nodiscard]] MeshData<S> lattice_mesh(const Cells& n, Map map) {
-  const std::size_t nx = n[0], ny = n[1], nz = n[2];
-  const std::size_t layer = (nx + 1) * (ny + 1), ring = 2 * (nx + ny);
-  // Vertex number of lattice point (i, j, k): full bottom layer, rings, full top layer.
-  const auto index = [&](std::size_t i, std::size_t j, std::size_t k) -> std::uint32_t {
+/// Vertex numbers of the lattice points on the cube's surface: full bottom layer, rings, full top layer.
+struct Lattice {
+  Cells n;
+  [[nodiscard]] std::uint32_t index(std::size_t i, std::size_t j, std::size_t k) const noexcept {
+    const auto [nx, ny, nz] = n;
+    const std::size_t layer = (nx + 1) * (ny + 1), ring = 2 * (nx + ny);
     if (k == 0) return static_cast<std::uint32_t>(j * (nx + 1) + i);
     const std::size_t base = layer + (k - 1) * ring;
     if (k == nz) return static_cast<std::uint32_t>(base + j * (nx + 1) + i);
@@ -68,47 +72,63 @@ template <Real S, class Map>
     if (i == nx) return static_cast<std::uint32_t>(base + nx + j);
     if (j == ny) return static_cast<std::uint32_t>(base + nx + ny + (nx - i));
     return static_cast<std::uint32_t>(base + 2 * nx + ny + (ny - j));
-  };
-  // Exactly +-1 at the ends and exactly symmetric.
+  }
+};
+
+/// The lattice points by number: exactly +-1 at the ends and exactly symmetric.
+template <Real S>
+[[nodiscard]] std::vector<Vec3<S>> lattice_points(const Lattice& lattice) {
+  const auto [nx, ny, nz] = lattice.n;
   const auto coordinate = [](std::size_t i, std::size_t cells) {
     return (S(2) * static_cast<S>(i) - static_cast<S>(cells)) / static_cast<S>(cells);
   };
-
-  MeshData<S> mesh;
-  mesh.vertices.resize(lattice_vertices(n));
+  std::vector<Vec3<S>> points(lattice_vertices(lattice.n));
   for (std::size_t k = 0; k <= nz; ++k) {
     for (std::size_t j = 0; j <= ny; ++j) {
       const bool full = k == 0 || k == nz || j == 0 || j == ny;
       for (std::size_t i = 0; i <= nx; i += full ? 1 : nx)
-        mesh.vertices[index(i, j, k)] = map(Vec3<S>(coordinate(i, nx), coordinate(j, ny), coordinate(k, nz)));
+        points[lattice.index(i, j, k)] = Vec3<S>(coordinate(i, nx), coordinate(j, ny), coordinate(k, nz));
     }
   }
+  return points;
+}
 
-  mesh.triangles.reserve(2 * (mesh.vertices.size() - 2));
+/// Two triangles for every cell's face, by the shorter diagonal between the vertices p.
+template <Real S>
+[[nodiscard]] std::vector<std::array<std::uint32_t, 3>> lattice_triangles(const Lattice& lattice,
+                                                                          const std::vector<Vec3<S>>& p) {
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+  triangles.reserve(2 * (p.size() - 2));
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
-    for (const std::size_t level : {std::size_t{0}, n[axis]}) {
-      for (std::size_t b = 0; b < n[v]; ++b) {
-        for (std::size_t a = 0; a < n[u]; ++a) {
+    for (const std::size_t level : {std::size_t{0}, lattice.n[axis]}) {
+      for (std::size_t b = 0; b < lattice.n[v]; ++b) {
+        for (std::size_t a = 0; a < lattice.n[u]; ++a) {
           const auto corner = [&](std::size_t da, std::size_t db) {
             Cells at{};
             at[axis] = level, at[u] = a + da, at[v] = b + db;
-            return index(at[0], at[1], at[2]);
+            return lattice.index(at[0], at[1], at[2]);
           };
           std::array<std::uint32_t, 4> q{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
           if (level == 0) std::swap(q[1], q[3]);
-          const auto& p = mesh.vertices;
-          if ((p[q[0]] - p[q[2]]).squaredNorm() <= (p[q[1]] - p[q[3]]).squaredNorm()) {
-            mesh.triangles.push_back({q[0], q[1], q[2]});
-            mesh.triangles.push_back({q[0], q[2], q[3]});
-          } else {
-            mesh.triangles.push_back({q[0], q[1], q[3]});
-            mesh.triangles.push_back({q[1], q[2], q[3]});
-          }
+          const bool first = (p[q[0]] - p[q[2]]).squaredNorm() <= (p[q[1]] - p[q[3]]).squaredNorm();
+          triangles.push_back({q[0], q[1], first ? q[2] : q[3]});
+          triangles.push_back({first ? q[0] : q[1], q[2], q[3]});
         }
       }
     }
   }
+  return triangles;
+}
+
+/// Mesh of the image of the cube's surface under `map`, a homeomorphism that keeps orientation.
+template <Real S, class Map>
+[[nodiscard]] MeshData<S> lattice_mesh(const Cells& n, Map map) {
+  const Lattice lattice{n};
+  MeshData<S> mesh;
+  mesh.vertices = lattice_points<S>(lattice);
+  for (Vec3<S>& x : mesh.vertices) x = map(x);
+  mesh.triangles = lattice_triangles(lattice, mesh.vertices);
   return mesh;
 }
 
