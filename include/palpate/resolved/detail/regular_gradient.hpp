@@ -33,8 +33,8 @@ namespace palpate::detail {
 ///     g_k = A_k n_k.sum_i c_ik q_i (1 - m_i m_i^T) (w_i - v) / |N_i|
 ///
 /// The points that carry load take that over, with its sum and its moment: q_i (b + D.r_i) (LoadFit). It is
-/// what turns a tool that presses on a curved body where v has not come to w: little since v has all of w's
-/// mean, a quarter of the energy that a closed path on an ellipsoid takes. On a flat face it is 0.
+/// what turns a tool that presses on a curved body where v has not come to w. Without it an ellipsoid on a
+/// lying cylinder has 4 % of error in its torque, with it 1 % (finite elements). On a flat face it is 0.
 template <bool has_friction>
 class RegularGradient {
  public:
