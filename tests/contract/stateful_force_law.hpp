@@ -21,7 +21,6 @@
 #include <cstring>
 #include <limits>
 #include <random>
-#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>

@@ -10,10 +10,8 @@
 #include <palpate/resolved/detail/vector_list.hpp>
 #include <palpate/response/second_order.hpp>
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <numbers>
 
 namespace palpate::detail {
