@@ -50,12 +50,23 @@ class FrictionCones {
 
   /// Axes, and s to `lists.per_mu`, for the loads `lists.load`.
   void place(const PointSystem& system, const Vec3<float>& g, FrictionLists& lists) noexcept {
-    const SimdVec3<V> mean = V(lean_) * each<V>(mean_slope(system, lists)) + each<V>(g);
+    SimdVec3<V> slopes{};
+    V loads{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
-      const SimdVec3<V> m = system.directions().load(i);
-      limit_per_mu(system, i, (max)(dot(m, lists.load.load(i)), V(0.f))).copy_to(&lists.per_mu[i]);
-      axes_.store(i, m + across(m, V(lean_) * axes_.load(i) - mean));
+      const SimdVec3<V> m = system.directions().load(i), o = outward.load(i);
+      const V q = (max)(dot(m, lists.load.load(i)), V(0.f)), cosine = dot(o, m);
+      const SimdVec3<V> slope = V(1.f) / (max)(cosine, V(rim)) * across(m, o);
+      const V most = V(rim_slope) * inverse_sqrt((max)(dot(slope, slope), V(tiny)));
+      const SimdVec3<V> h = (min)(most, V(1.f)) * slope;
+      axes_.store(i, h);
+      slopes += q * h, loads += q;
+      limit_per_mu(cosine, q / V(system.areas() + i)).copy_to(&lists.per_mu[i]);
     }
+    const Vec3<float> mean = sum_of(slopes) / (std::max)(reduce(loads), tiny);
+    const SimdVec3<V> less = each<V>(Vec3<float>(lean_ * mean + g));
+    for (std::size_t i = 0; i < system.stride(); i += V::size())
+      axes_.store(i, system.directions().load(i) +
+                         across(system.directions().load(i), V(lean_) * axes_.load(i) - less));
   }
   /// c
   [[nodiscard]] const VectorList& axes(const PointSystem& /*system*/) const noexcept { return axes_; }
@@ -64,27 +75,10 @@ class FrictionCones {
   static constexpr float rim_slope = 0.75f, rim = 0.8f;  // and its cosine
   static constexpr float tiny = (std::numeric_limits<float>::min)();
 
-  // h to the axes. Returns its mean by load.
-  [[nodiscard]] Vec3<float> mean_slope(const PointSystem& system, const FrictionLists& lists) noexcept {
-    SimdVec3<V> sum{};
-    V loads{};
-    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
-      const SimdVec3<V> m = system.directions().load(i), o = outward.load(i);
-      const SimdVec3<V> slope = V(1.f) / (max)(dot(o, m), V(rim)) * across(m, o);
-      const V q = (max)(dot(m, lists.load.load(i)), V(0.f)),
-              most = V(rim_slope) * inverse_sqrt((max)(dot(slope, slope), V(tiny)));
-      const SimdVec3<V> h = (min)(most, V(1.f)) * slope;
-      axes_.store(i, h);
-      sum += q * h, loads += q;
-    }
-    return sum_of(sum) / (std::max)(reduce(loads), tiny);
-  }
-  // s of points i .. with the normal loads q.
-  [[nodiscard]] PALPATE_INLINE V limit_per_mu(const PointSystem& system, std::size_t i,
-                                              const V& q) const noexcept {
-    const V area = V(1.f) / clamp(dot(outward.load(i), system.directions().load(i)), rim, 1.f),
-            stretch = sqrt(V(0.5f) * (V(1.f) + area * area)),
-            strain = (max)(V(strain_across_) * q / V(system.areas() + i), V(-0.5f));
+  // s of points whose tool has a normal at that cosine to m, and of q/A.
+  [[nodiscard]] PALPATE_INLINE V limit_per_mu(const V& cosine, const V& q_per_area) const noexcept {
+    const V area = V(1.f) / clamp(cosine, rim, 1.f), stretch = sqrt(V(0.5f) * (V(1.f) + area * area)),
+            strain = (max)(V(strain_across_) * q_per_area, V(-0.5f));
     return area * stretch * (V(1.f) + strain);
   }
 
@@ -92,12 +86,10 @@ class FrictionCones {
   VectorList axes_;
 };
 
-/// Of a body whose response is linear, about the directions of pressing; and without friction.
+/// Of a body whose response is linear, about the directions of pressing, s = 1; and without friction.
 struct StraightCones {
   StraightCones(double /*nu*/, std::size_t /*points*/) {}
-  static void place(const PointSystem& system, const Vec3<float>& /*g*/, FrictionLists& lists) noexcept {
-    std::fill_n(lists.per_mu.data(), system.stride(), 1.f);
-  }
+  static void place(const PointSystem&, const Vec3<float>&, const FrictionLists&) noexcept {}
   [[nodiscard]] static const VectorList& axes(const PointSystem& system) noexcept {
     return system.directions();
   }

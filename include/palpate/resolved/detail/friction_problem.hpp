@@ -40,13 +40,14 @@ inline constexpr float rounding2 = 4e-12f;
 struct FrictionLists : LoadLists {
   VectorList anchor, load_step, u_step;
   AlignedList<float> anchored;  ///< 1 where the point has an anchor; 0 where it is new: no tractions
-  AlignedList<float> per_mu;    ///< limit of the tractions over mu q, s
+  AlignedList<float> per_mu;    ///< limit of the tractions over mu q, s; 1 from set-up on
   float step = 0;               ///< the last tick's last; 0: none [1/m]
   float mu = 0;                 ///< of the result
   void resize(std::size_t size) {
     LoadLists::resize(size);
     for (auto* list : {&anchor, &load_step, &u_step}) list->resize(size);
     for (auto* list : {&anchored, &per_mu}) list->resize(size);
+    std::fill_n(per_mu.data(), size, 1.f);
   }
 };
 

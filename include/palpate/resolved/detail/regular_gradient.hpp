@@ -60,9 +60,10 @@ class RegularGradient {
       const SimdVec3<V> m = system.directions().load(i);
       return dot(n, m) * dot(m, all);
     });
-    if constexpr (has_friction) slope_ = (last + slope_) / 2;
-    if constexpr (!has_friction)
-      if (!system.is_flat()) measure_turn(system, q, w, known, given, touching, tool, fit);
+    if constexpr (has_friction)
+      slope_ = (last + slope_) / 2;
+    else if (!system.is_flat())
+      measure_turn(system, q, w, known, given, touching, tool, fit);
   }
   void forget() noexcept { slope_.setZero(), tilt_ = mean_ = {}, less_ = 0; }
   /// The slope along the surface, by which the body turns.

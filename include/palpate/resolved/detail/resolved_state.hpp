@@ -56,8 +56,7 @@ class ResolvedState {
         cones_(body.nu(), capacity),
         gradient_(capacity) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
-    last_.resize(padded), pressure_.resize(padded), result_.resize(padded);
-    reaction_.resize(padded);
+    last_.resize(padded), pressure_.resize(padded), result_.resize(padded), reaction_.resize(padded);
   }
 
   void reset() noexcept {
@@ -274,13 +273,14 @@ class ResolvedState {
     if constexpr (has_friction && Strain::active) strain_.add(system_, loads, u);
   }
   void begin_loads(float share) noexcept {
+    const SimdVec3<V> moved = each<V>(regular_.moved());
     for (std::size_t i = 0; i < system_.stride(); i += V::size()) {
       const SimdVec3<V> P = last_.load.load(i) + V(share) * last_.load_step.load(i);
       if constexpr (!has_friction) {
         (max)(dot(system_.directions().load(i), P), V(0.f)).copy_to(&pressure_.q[i]);
       } else {
         result_.load.store(i, P);
-        result_.anchor.store(i, last_.anchor.load(i) - beside_.load(i) - each<V>(regular_.moved()));
+        result_.anchor.store(i, last_.anchor.load(i) - beside_.load(i) - moved);
         V(&last_.loaded[i]).copy_to(&result_.anchored[i]);
       }
     }
