@@ -242,7 +242,8 @@ TEST_CASE("a ball that slides over a box's edge, R/4 deep, is not swung from tic
     if (i > 1) largest = (std::max)(largest, (force - 2 * last + before).norm());
     before = last, last = force, peak = (std::max)(peak, force.norm());
   }
-  // A fifteenth as points come and go; a quarter, back and forth, where the normals are in the cones' axes.
+  // A fifteenth as points come and go; a quarter, back and forth, where each point's own
+  // normal is in its cone's axis.
   CHECK(largest <= 0.1 * peak);
 }
 

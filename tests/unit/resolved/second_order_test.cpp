@@ -7,7 +7,6 @@
 #include <palpate/law/friction/coulomb.hpp>
 #include <palpate/resolved/contact_samples.hpp>
 #include <palpate/resolved/detail/finite_strain.hpp>
-#include <palpate/resolved/detail/friction_cones.hpp>
 #include <palpate/resolved/response_compliance.hpp>
 #include <palpate/solver/contact_solver.hpp>
 
@@ -18,6 +17,7 @@
 #include <support/on_half_space.hpp>
 #include <support/response_fields.hpp>
 
+#include <algorithm>
 #include <memory>
 #include <numbers>
 
@@ -125,82 +125,6 @@ TEST_CASE(
     }
     CHECK(steepest < 0.95);
   }
-}
-
-TEST_CASE("the limit of tractions grows with the slope up to a rim's, and halves at most under pressure") {
-  constexpr double nu = 0.3;
-  detail::PointSystem system(8, static_cast<float>(1 - 2 * nu), true);
-  system.begin_tick();
-  system.clear();
-  system.touch(1e-3f, 1e-9f, Vec3<float>::Zero(), -1e-9f * Vec3<float>::UnitY());
-  system.add(Vec3<float>::Zero(), -Vec3<float>::UnitY(), 1e-3f, 1e-6f);
-  system.build();
-  detail::FrictionLists lists;
-  lists.resize(16);  // any register's padding
-  detail::FrictionCones strained(nu, 8);
-  detail::StraightCones(nu, 8).place(system, Vec3<float>::Zero(), lists);
-  CHECK(lists.per_mu[0] == 1);
-  const auto limit = [&](float cosine, float q) {
-    strained.outward.set(0, Vec3<float>(std::sqrt(1 - cosine * cosine), -cosine, 0));
-    lists.load.set(0, -q * Vec3<float>::UnitY());
-    strained.place(system, Vec3<float>::Zero(), lists);
-    return lists.per_mu[0];
-  };
-  CHECK(limit(1, 0) == 1);
-  CHECK_RELATIVE(limit(0.9f, 0), std::sqrt((1 + 1 / 0.81) / 2) / 0.9,
-                 1e-6);  // rounding of float, here and below
-  CHECK(limit(0.7f, 0) == limit(0.8f, 0));
-  CHECK(limit(-1, 0) == limit(0.8f, 0));
-  CHECK_RELATIVE(limit(0.9f, 1e-7f) / limit(0.9f, 0), 1 - (1 - 2 * nu) * std::numbers::pi * 0.1, 1e-6);
-  CHECK(limit(1, 1) == 0.5f);
-}
-
-TEST_CASE(
-    "cones lean with the tool's normal, up to a rim's slope; no load aside is left of all, none at nu 1/2") {
-  for (const double nu : {0.1, 0.4, 0.5}) {
-    CAPTURE(nu);
-    detail::PointSystem system(8, static_cast<float>(1 - 2 * nu), true);
-    system.begin_tick();
-    system.clear();
-    system.touch(1e-3f, 1e-9f, Vec3<float>::Zero(), -1e-9f * Vec3<float>::UnitY());
-    detail::FrictionLists lists;
-    lists.resize(16);  // any register's padding
-    detail::FrictionCones cones(nu, 8);
-    const Vec3<float> normals[] = {{0, -1, 0}, {0.28f, -0.96f, 0}, {0, -0.6f, -0.8f}, {0, 0, 1}, {0, 0, 0}};
-    const float loads[] = {4, 2, 1, 1, 0};
-    for (std::size_t i = 0; i < 5; ++i) {
-      system.add(1e-3f * Vec3<float>(float(i), 0, 0), -Vec3<float>::UnitY(), 1e-3f, 1e-6f);
-      cones.outward.set(i, normals[i]);
-      lists.load.set(i, Vec3<float>(0.3f, -loads[i], 0.1f));
-    }
-    system.build();
-    cones.place(system, Vec3<float>::Zero(), lists);
-    const double lean = nu < 0.25 ? 1 : 2 * (1 - 2 * nu);
-    const V slopes[] = {{0, 0, 0}, {0.28 / 0.96, 0, 0}, {0, 0, -0.75}, {0, 0, 0.75}, {0, 0, 0}};
-    const V mean(2 * (0.28 / 0.96) / 8, 0, 0);
-    for (std::size_t i = 0; i < 5; ++i)  // rounding of float
-      CHECK((cones.axes(system)[i].cast<double>() - (lean * (slopes[i] - mean) - V::UnitY())).norm() <= 1e-6);
-    CHECK(&detail::StraightCones(nu, 8).axes(system) == &system.directions());
-  }
-}
-
-TEST_CASE("cones turn with the surface, and their axes stay as long along the direction of pressing") {
-  detail::PointSystem system(8, 0.02f, true);
-  system.begin_tick();
-  system.clear();
-  const Vec3<float> n(0.6f, -0.8f, 0), g(0.05f, 0.01f, -0.02f);
-  system.touch(1e-3f, 1e-9f, Vec3<float>::Zero(), 1e-9f * n);
-  system.add(Vec3<float>::Zero(), n, 1e-3f, 1e-6f);
-  system.build();
-  detail::FrictionLists lists;
-  lists.resize(16);  // any register's padding
-  detail::FrictionCones cones(0.3, 8);
-  cones.outward.set(0, n);
-  lists.load.set(0, n);
-  cones.place(system, g, lists);
-  const Vec3<float> m = system.direction(0), c = cones.axes(system)[0];
-  CHECK((c - (m - (g - m.dot(g) * m))).norm() <= 1e-6f);  // rounding of float
-  CHECK_RELATIVE(c.dot(m), 1, 1e-6);
 }
 
 TEST_CASE("a ball by a block's edge, pushed towards it: finite elements' force within 2 %, held and slid") {

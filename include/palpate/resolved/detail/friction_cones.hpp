@@ -5,6 +5,7 @@
 
 #include <palpate/core/aligned_list.hpp>
 #include <palpate/core/simd_math.hpp>
+#include <palpate/resolved/detail/depth_slope.hpp>
 #include <palpate/resolved/detail/friction_problem.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/resolved/detail/vector_list.hpp>
@@ -13,15 +14,17 @@
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <type_traits>
 
 namespace palpate::detail {
 
 /// The load of a point is P = q c + t, q = m.P, |t| <= mu s q. The axis c is what it bears without friction:
 ///
-///     c = m - g + lean (h - mean of h by load)
+///     c = m + n_t - g + lean (h - mean of h by load)
 ///
-/// m: the direction of pressing. g, across m: slope of the regular part, by which the surface has turned from
-/// m (regular_gradient.hpp). h: slope of the tool's own normal to m.
+/// m: the direction of pressing. Across it: n_t, by which the undeformed surface is turned and the depth
+/// changes as the tool moves (depth_slope.hpp); g, slope of the regular part, by which it has turned since
+/// (regular_gradient.hpp); h, slope of the tool's own normal.
 ///
 /// What of the tool is slanted presses along its own normal. Of the part of that across m, q h, the stress
 /// along the surface holds some, for the surface has turned with the tool: all where it is as large as the
@@ -47,26 +50,31 @@ class FrictionCones {
   }
 
   VectorList outward;  ///< the tool's unit normals at the points
+  DepthSlope slope;
 
-  /// Axes, and s to `lists.per_mu`, for the loads `lists.load`.
-  void place(const PointSystem& system, const Vec3<float>& g, FrictionLists& lists) noexcept {
+  /// Axes, and s to `lists.per_mu`, for normal loads q, at positions relative to `origin`.
+  template <Real S>
+  void place(const PointSystem& system, const float* loads, const Vec3<S>& origin, const Vec3<float>& g,
+             FrictionLists& lists) noexcept {
+    slope.measure(system, loads, origin);
     SimdVec3<V> slopes{};
-    V loads{};
+    V all{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const SimdVec3<V> m = system.directions().load(i), o = outward.load(i);
-      const V q = (max)(dot(m, lists.load.load(i)), V(0.f)), cosine = dot(o, m);
-      const SimdVec3<V> slope = V(1.f) / (max)(cosine, V(rim)) * across(m, o);
-      const V most = V(rim_slope) * inverse_sqrt((max)(dot(slope, slope), V(tiny)));
-      const SimdVec3<V> h = (min)(most, V(1.f)) * slope;
+      const V q(loads + i), cosine = dot(o, m);
+      const SimdVec3<V> steep = V(1.f) / (max)(cosine, V(rim)) * across(m, o);
+      const V most = V(rim_slope) * inverse_sqrt((max)(dot(steep, steep), V(tiny)));
+      const SimdVec3<V> h = (min)(most, V(1.f)) * steep;
       axes_.store(i, h);
-      slopes += q * h, loads += q;
+      slopes += q * h, all += q;
       limit_per_mu(cosine, q / V(system.areas() + i)).copy_to(&lists.per_mu[i]);
     }
-    const Vec3<float> mean = sum_of(slopes) / (std::max)(reduce(loads), tiny);
-    const SimdVec3<V> less = each<V>(Vec3<float>(lean_ * mean + g));
-    for (std::size_t i = 0; i < system.stride(); i += V::size())
-      axes_.store(i, system.directions().load(i) +
-                         across(system.directions().load(i), V(lean_) * axes_.load(i) - less));
+    const Vec3<float> mean = sum_of(slopes) / (std::max)(reduce(all), tiny);
+    const auto turned = slope.over(origin, lean_ * mean + g);
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+      const SimdVec3<V> m = system.directions().load(i);
+      axes_.store(i, m + across(m, turned(system.feet().load(i)) + V(lean_) * axes_.load(i)));
+    }
   }
   /// c
   [[nodiscard]] const VectorList& axes(const PointSystem& /*system*/) const noexcept { return axes_; }
@@ -86,13 +94,39 @@ class FrictionCones {
   VectorList axes_;
 };
 
-/// Of a body whose response is linear, about the directions of pressing, s = 1; and without friction.
-struct StraightCones {
-  StraightCones(double /*nu*/, std::size_t /*points*/) {}
-  static void place(const PointSystem&, const Vec3<float>&, const FrictionLists&) noexcept {}
-  [[nodiscard]] static const VectorList& axes(const PointSystem& system) noexcept {
-    return system.directions();
+/// Of a body whose response is linear: s = 1, c = m + n_t; m itself where the body is flat.
+class LinearCones {
+ public:
+  using V = VectorList::V;
+  LinearCones(double /*nu*/, std::size_t points) { axes_.resize(AlignedList<float>::padded(points)); }
+
+  DepthSlope slope;
+
+  template <Real S>
+  void place(const PointSystem& system, const float* loads, const Vec3<S>& origin, const Vec3<float>& /*g*/,
+             const FrictionLists& /*lists*/) noexcept {
+    slope.measure(system, loads, origin);
+    if (slope.is_zero()) return;
+    const auto turned = slope.over(origin, Vec3<float>::Zero());
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+      const SimdVec3<V> m = system.directions().load(i);
+      axes_.store(i, m + across(m, turned(system.feet().load(i))));
+    }
   }
+  [[nodiscard]] const VectorList& axes(const PointSystem& system) const noexcept {
+    return slope.is_zero() ? system.directions() : axes_;
+  }
+
+ private:
+  VectorList axes_;
+};
+
+template <bool finite_strain>
+using ConesOf = std::conditional_t<finite_strain, FrictionCones, LinearCones>;
+
+/// Without friction.
+struct NoCones {
+  NoCones(double /*nu*/, std::size_t /*points*/) {}
 };
 
 }  // namespace palpate::detail

@@ -6,9 +6,9 @@
 ///     q >= 0,  m.u - d >= 0,  one of them 0;  u = A P, q = m.P, t = P - q c           Signorini
 ///     |t| <= mu s q;  sticks: u_t = a;  slips: t = mu s q along a - u_t                 Coulomb
 ///
-/// s, c: 1 and m, or of finite strain (finite_strain.hpp); c.m = 1. By gradients of all loads at once,
-/// projected onto the cones: where a tool slides the cones hold every point, and conjugate gradients would
-/// begin anew each time. A step is that of a simpler body,
+/// s, c: friction_cones.hpp; c.m = 1. By gradients of all loads at once, projected onto the cones: where a
+/// tool slides the cones hold every point, and conjugate gradients would begin anew each time. A step is that
+/// of a simpler body,
 ///
 ///     du_i = D_i dP_i + z,   z = C sum_j dP_j
 ///

@@ -70,6 +70,22 @@ class LoadFit {
       products += (V(q_ + i) * (f(i) - mean)) * from_mean(i);
     return per_spread_ * (sum_of(products) / load_);
   }
+  struct Linear {
+    Vec3<float> mean;
+    Mat3<float> by_x;
+  };
+  /// Of a vector f(i) at points i .. on: its mean by load and its gradient, a column for each direction.
+  template <class F>
+  [[nodiscard]] Linear linear(const F& f) const noexcept {
+    SimdVec3<V> sum{}, by_x{}, by_y{}, by_z{};
+    for (std::size_t i = 0; i < system_.stride(); i += V::size()) {
+      const SimdVec3<V> qf = V(q_ + i) * f(i), r = from_mean(i);
+      sum += qf, by_x += r.x * qf, by_y += r.y * qf, by_z += r.z * qf;
+    }
+    Mat3<float> products;
+    products << sum_of(by_x), sum_of(by_y), sum_of(by_z);
+    return {sum_of(sum) / load_, products * per_spread_ / load_};
+  }
   /// D, of loads q D.r with the moment sum q r (D.r) = `moment`, a sum of loads by r.
   [[nodiscard]] Vec3<float> tilt(const Vec3<float>& moment) const noexcept {
     return per_spread_ * ((moment - m_.dot(moment) * m_) / load_);

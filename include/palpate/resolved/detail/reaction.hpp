@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file What comes of a tick's loads: for the tool, and with friction for the surface.
+/// @file What comes of a tick's loads: without friction for the tool, with friction for the surface.
 
 #include <palpate/core/aligned_list.hpp>
 #include <palpate/core/simd_math.hpp>
@@ -30,50 +30,46 @@ class Reaction {
       felt_.store(i, V(&q[i]) * (deeper - gradient.less(system, i, n)));
     }
   }
-  [[nodiscard]] Vec3<float> felt(std::size_t i) const noexcept { return felt_[i]; }  ///< -f/(4 pi mu)
+  /// -f/(4 pi mu)
+  [[nodiscard]] Vec3<float> felt(const LoadLists& /*result*/, std::size_t i) const noexcept {
+    return felt_[i];
+  }
 
  private:
   VectorList felt_;
 };
 
-/// With friction: the loads, and the gradient of the depth as far as a point slips, by the square of its
-/// share of the limit; where it sticks the body goes with the tool. Which do, and where these hold the
-/// surface.
+/// With friction the tool feels the loads themselves. Which points stick, and where these hold the surface.
 template <>
 class Reaction<true> {
  public:
   using V = VectorList::V;
 
-  void resize(std::size_t size) {
-    for (auto* list : {&felt_, &anchor_}) list->resize(size);
-    sticks_.resize(size);
-  }
+  void resize(std::size_t size) { anchor_.resize(size), sticks_.resize(size); }
   /// Of the loads `result` on cones about `axes`, normal ones q. `beside`: displacements by others' loads;
   /// `moved`: what the solve has left out of all displacements.
   void measure(const PointSystem& system, const VectorList& axes, const AlignedList<float>& q,
                const FrictionLists& result, const auto& beside, const Vec3<float>& moved) noexcept {
-    const V zero(0.f), one(1.f), tiny((std::numeric_limits<float>::min)());
+    const V zero(0.f), one(1.f);
     const SimdVec3<V> all = each<V>(moved);
     V total{}, sticking{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
-      const SimdVec3<V> m = system.directions().load(i), n = system.normals().load(i),
-                        P = result.load.load(i), u = result.u.load(i);
+      const SimdVec3<V> u = result.u.load(i);
       const V qi(&q[i]), limit = V(result.mu) * V(&result.per_mu[i]) * qi, limit2 = limit * limit;
-      const SimdVec3<V> t = P - qi * axes.load(i);
-      const V held2 = dot(t, t);
-      const auto sticks = held2 < V(slips_from) * limit2, holds = sticks && V(&result.anchored[i]) > zero;
+      const SimdVec3<V> t = result.load.load(i) - qi * axes.load(i);
+      const auto sticks = dot(t, t) < V(slips_from) * limit2, holds = sticks && V(&result.anchored[i]) > zero;
       const SimdVec3<V> a = result.anchor.load(i),
                         kept{select(holds, a.x, u.x), select(holds, a.y, u.y), select(holds, a.z, u.z)};
-      anchor_.store(i, across(m, beside.load(i) + kept + all));
+      anchor_.store(i, across(system.directions().load(i), beside.load(i) + kept + all));
       select(sticks, one, zero).copy_to(&sticks_[i]);
       total += qi, sticking += select(sticks, qi, zero);
-      const V slips = select(sticks, held2 / (max)(limit2, tiny), one);
-      felt_.store(i, P + (slips * qi) * (one / (max)(dot(n, m), tiny) * n - m));
     }
     total_ = reduce(total), sticking_ = reduce(sticking);
   }
 
-  [[nodiscard]] Vec3<float> felt(std::size_t i) const noexcept { return felt_[i]; }      ///< -f/(4 pi mu)
+  [[nodiscard]] static Vec3<float> felt(const FrictionLists& result, std::size_t i) noexcept {
+    return result.load[i];
+  }
   [[nodiscard]] Vec3<float> anchor(std::size_t i) const noexcept { return anchor_[i]; }  ///< [m]
   [[nodiscard]] bool sticks(std::size_t i) const noexcept { return sticks_[i] > 0; }
   /// Sums of normal loads: of all points, and of those that stick.
@@ -81,7 +77,7 @@ class Reaction<true> {
   [[nodiscard]] float sticking() const noexcept { return sticking_; }
 
  private:
-  VectorList felt_, anchor_;
+  VectorList anchor_;
   AlignedList<float> sticks_;  // 1, or 0
   float total_ = 0, sticking_ = 0;
 };

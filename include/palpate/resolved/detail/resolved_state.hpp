@@ -182,7 +182,7 @@ class ResolvedState {
  private:
   using RegularPart = typename RegularPartOf<Compliance>::type;
   using Strain = std::conditional_t<RegularPart::active, FiniteStrain, LinearStrain>;
-  using Cones = std::conditional_t<has_friction && Strain::active, FrictionCones, StraightCones>;
+  using Cones = std::conditional_t<has_friction, ConesOf<Strain::active>, NoCones>;
   using Shift = std::conditional_t<RegularPart::active, BodyShift<S>, NoBodyShift>;
   using Beside = std::conditional_t<(max_beside > 0), LoadsBeside<S>, NoLoadsBeside>;
   static constexpr float near = 0.05f;   // of the depth; with less gap points are solved for at once
@@ -193,7 +193,7 @@ class ResolvedState {
   void forget() noexcept {
     slides_ = false, strength_ = {}, carried_.clear(origin_);
     shift_.forget(), gradient_.forget(), beside_.drop();
-    if constexpr (has_friction) result_.step = 0;
+    if constexpr (has_friction) cones_.slope.forget(), result_.step = 0;
     if constexpr (Strain::active) strain_.forget(), regular_.take_in();
   }
   // Where a load at `foot` acts, seen from afar.
@@ -276,15 +276,15 @@ class ResolvedState {
     const SimdVec3<V> moved = each<V>(regular_.moved());
     for (std::size_t i = 0; i < system_.stride(); i += V::size()) {
       const SimdVec3<V> P = last_.load.load(i) + V(share) * last_.load_step.load(i);
-      if constexpr (!has_friction) {
-        (max)(dot(system_.directions().load(i), P), V(0.f)).copy_to(&pressure_.q[i]);
-      } else {
+      (max)(dot(system_.directions().load(i), P), V(0.f)).copy_to(&pressure_.q[i]);
+      if constexpr (has_friction) {
         result_.load.store(i, P);
         result_.anchor.store(i, last_.anchor.load(i) - beside_.load(i) - moved);
         V(&last_.loaded[i]).copy_to(&result_.anchored[i]);
       }
     }
-    if constexpr (has_friction) cones_.place(system_, gradient_.slope(), result_);
+    if constexpr (has_friction)
+      cones_.place(system_, pressure_.q.data(), origin_, gradient_.slope(), result_);
   }
 
   /// Takes in points that the surface has not given way to, or holds them where they are: w was `left_out` in
@@ -358,7 +358,7 @@ class ResolvedState {
                      static_cast<float>(tool.area(at.point)));
       }
       contacts_.push_back({at.point, p.sticks, pose_ * tool.point(at.point), -at.m.template cast<S>(),
-                           -per_load_ * reaction_.felt(i).template cast<S>(),
+                           -per_load_ * reaction_.felt(result_, i).template cast<S>(),
                            per_load_ * static_cast<S>(q) / tool.area(at.point),
                            static_cast<S>(at.depth + at.shifted * at.m.dot(v))});
     }
