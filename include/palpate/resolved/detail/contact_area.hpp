@@ -70,14 +70,24 @@ template <Real S>
 /// it within the contact. Where the pressure falls as under a ball, p = 1.5 p_mean sqrt(2 s/a) at s inside
 /// the rim of radius a, a cell of width h has the mean pressure sqrt(2 h f/a) p_mean f; on points it is 0.8
 /// of that, for points beyond the rim carry a part (balls on 20 to 150 points of a half-space: area -3 to
-/// +2 % in the mean of positions). `rounded(i)`: rounded_rim_pressure() of point i. Overwrites p and y of the
-/// lists.
+/// +2 % in the mean of positions). `rounded(i)`: rounded_rim_pressure() of point i.
+///
+/// Where few points touch, most of them at a rim that is not rounded, the area follows from how even the
+/// pressure is instead:
+///
+///     A = 1.07 (sum q)^2 / sum q^2/A_i
+///
+/// Hertz's pressure has 9/8 under a ball, 1.08 along a line; on few points sum q^2/A_i is some 5 % too small.
+/// It counts by how few points touch and by the share of the area at such a rim: balls on 4, 7, 10, 14, 20
+/// points have 25, 10, 6, 4, 3 % of error, rms over positions; by the rim alone 32, 17, 10, 6, 4 %.
+/// Overwrites p and y of the lists.
 template <class Rounded>
 [[nodiscard]] inline float contact_area(const PointSystem& system, PressureLists& lists,
                                         const Unloaded& unloaded, const Rounded& rounded) noexcept {
   using V = Unloaded::V;
   constexpr float rim_pressure = 0.8f;
   constexpr float neighbours2 = 2.25f;  // of a cell's area: between first and second neighbours
+  constexpr float few = 13;             // as many points that carry alike; all by the rim from twice that on
   const V zero(0.f), one(1.f), most((std::numeric_limits<float>::max)()),
       tiny((std::numeric_limits<float>::min)());
   const float* const q = lists.q.data();
@@ -88,10 +98,11 @@ template <class Rounded>
     const float local = rim[i] > 0 ? rim_pressure * rounded(i) : 0.f;
     bound[i] = local > 0 ? 1 / std::cbrt(local * local) : (std::numeric_limits<float>::max)();
   }
-  V wholes{}, loads{}, counts{};
+  V wholes{}, rims{}, loads{}, counts{};
   for (std::size_t i = 0; i < system.stride(); i += V::size()) {
     const V qi(q + i), area = select(qi > zero, V(system.areas() + i), zero);
     const V pressure = (max)(qi / V(system.areas() + i), tiny);
+    rims += select(V(rim + i) > zero && V(bound + i) == most, area, zero);
     select(V(rim + i) > zero, exp2(V(2.f / 3) * log2(pressure)), most).copy_to(rim + i);
     wholes += area, loads += qi, counts += select(qi > zero, one, zero);
   }
@@ -106,7 +117,15 @@ template <class Rounded>
                      V(system.areas() + i) * (min)((min)(V(per_full), V(bound + i)) * V(rim + i), one), zero);
     sum = reduce(sums);
   }
-  return sum;
+  if (!(load > 0)) return sum;
+  V squares{}, per_areas{};
+  for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+    const V share = V(q + i) / V(load);
+    squares += share * share;
+    per_areas += select(V(q + i) > zero, share * share / V(system.areas() + i), zero);
+  }
+  const float even = (std::min)(1.07f / reduce(per_areas), whole), alike = 1 / reduce(squares);
+  return std::lerp(sum, even, reduce(rims) / whole * std::clamp(2 - alike / few, 0.f, 1.f));
 }
 
 }  // namespace palpate::detail
