@@ -8,6 +8,7 @@
 #include <palpate/resolved/detail/depth_slope.hpp>
 #include <palpate/resolved/detail/friction_problem.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
+#include <palpate/resolved/detail/twist_stiffening.hpp>
 #include <palpate/resolved/detail/vector_list.hpp>
 
 #include <algorithm>
@@ -51,6 +52,7 @@ class FrictionCones {
 
   VectorList outward;  ///< the tool's unit normals at the points
   DepthSlope slope;
+  TwistStiffening twist;
 
   /// Axes, and s to `lists.per_mu`, for normal loads q, at positions relative to `origin`.
   template <Real S>
@@ -69,6 +71,7 @@ class FrictionCones {
       slopes += q * h, all += q;
       limit_per_mu(cosine, q / V(system.areas() + i)).copy_to(&lists.per_mu[i]);
     }
+    twist.measure(system, loads, axes_);
     const Vec3<float> mean = sum_of(slopes) / (std::max)(reduce(all), tiny);
     const auto turned = slope.over(origin, lean_ * mean + g);
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {

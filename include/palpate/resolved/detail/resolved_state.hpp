@@ -60,8 +60,7 @@ class ResolvedState {
   }
 
   void reset() noexcept {
-    contacts_.clear(), forget(), beside_.forget();
-    tick_ += 2;  // no point has touched in the tick before
+    contacts_.clear(), forget(), beside_.forget(), tick_ += 2;  // no point has touched in the tick before
   }
   [[nodiscard]] bool has_contact() const noexcept { return !contacts_.empty(); }
   [[nodiscard]] std::span<const PointContact<S>> contacts() const noexcept {
@@ -270,7 +269,8 @@ class ResolvedState {
   void displace(const auto& loads, auto&& u) noexcept {
     system_.displace(loads, u);
     if constexpr (RegularPart::active) regular_.add(system_, loads, u);
-    if constexpr (has_friction && Strain::active) strain_.add(system_, loads, u);
+    if constexpr (has_friction && Strain::active)
+      strain_.add(system_, loads, u), cones_.twist.add(system_, loads, u);
   }
   void begin_loads(float share) noexcept {
     const SimdVec3<V> moved = each<V>(regular_.moved());

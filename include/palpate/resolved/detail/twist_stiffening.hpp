@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+/// @file How a round tool that is pressed in is stiffer to a turn about the direction of pressing.
+
+#include <palpate/core/simd_math.hpp>
+#include <palpate/resolved/detail/point_system.hpp>
+#include <palpate/resolved/detail/vector_list.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+namespace palpate::detail {
+
+/// On the half-space a disc that sticks turns by theta = 3 M/(16 mu a^3) about its axis [reissner1944]. A
+/// face that lies deeper than its rim by z meets more of the body: where it is moved on by z, the energy
+/// grows by tau^2/(2 mu) z per area, with the disc's tractions tau = 4/pi mu theta r/sqrt(a^2 - r^2). Under
+/// a ball, z = (a^2 - r^2)/(2 R), that is kappa of the disc's own:
+///
+///     u = K P + W P - 3 pi/(4 a^3) kappa/(1 + kappa) m x (x - mean x) M,   kappa = 3/(4 pi) a/R <= 0.3
+///
+/// M: moment of the loads P about m. 1/R: slope of the tool's own normals over r, by regression over the
+/// loads, where r^2 is less than 1.2 of its mean: a flat face's rounded rim does not count, nor does a
+/// hollow.
+class TwistStiffening {
+ public:
+  using V = VectorList::V;
+
+  /// With normal loads q and the tool's slopes to the directions of pressing.
+  void measure(const PointSystem& system, const float* q, const VectorList& slopes) noexcept {
+    per_moment_ = 0;
+    V loads{}, pressures{};
+    SimdVec3<V> xs{}, ms{};
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+      const V qi(q + i);
+      loads += qi, pressures += qi * (qi / V(system.areas() + i));
+      xs += qi * system.feet().load(i), ms += qi * system.directions().load(i);
+    }
+    const float load = reduce(loads);
+    if (!(load > 0)) return;
+    mean_ = sum_of(xs) / load, m_ = sum_of(ms).normalized();
+    const SimdVec3<V> mean = each(mean_);
+    V squares{};
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+      const SimdVec3<V> r = system.feet().load(i) - mean;
+      squares += V(q + i) * dot(r, r);
+    }
+    constexpr float inner = 1.2f, pi = std::numbers::pi_v<float>;
+    const V near(inner * reduce(squares) / load);
+    V turns{}, spreads{};
+    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+      const SimdVec3<V> r = system.feet().load(i) - mean;
+      const V r2 = dot(r, r), w = V(q + i) * (max)(near - r2, V(0.f));
+      turns += w * dot(slopes.load(i), r), spreads += w * r2;
+    }
+    const float turn = reduce(turns), spread = reduce(spreads);
+    if (!(turn > 0) || !(spread > 0)) return;
+    const float a = load / std::sqrt(8 * pi / 9 * reduce(pressures)),
+                kappa = (std::min)(3 / (4 * pi) * (a * turn / spread), 0.3f);
+    per_moment_ = 3 * pi / (4 * a * a * a) * kappa / (1 + kappa);
+  }
+  /// u less what the turn is less.
+  void add(const PointSystem& system, const VectorList& P, VectorList& u) const noexcept {
+    if (!(per_moment_ > 0)) return;
+    const SimdVec3<V> m = each(m_), mean = each(mean_);
+    V moments{};
+    for (std::size_t i = 0; i < system.stride(); i += V::size())
+      moments += dot(m, cross(system.feet().load(i) - mean, P.load(i)));
+    const SimdVec3<V> turn = each(Vec3<float>(per_moment_ * reduce(moments) * m_));
+    for (std::size_t i = 0; i < system.stride(); i += V::size())
+      u.store(i, u.load(i) - cross(turn, system.feet().load(i) - mean));
+  }
+
+ private:
+  Vec3<float> m_ = Vec3<float>::Zero(), mean_ = Vec3<float>::Zero();
+  float per_moment_ = 0;  // [1/m^3]
+};
+
+}  // namespace palpate::detail
