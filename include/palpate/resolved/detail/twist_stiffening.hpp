@@ -21,8 +21,10 @@ namespace palpate::detail {
 ///
 ///     u = K P + W P - 3 pi/(4 a^3) kappa/(1 + kappa) m x (x - mean x) M,   kappa = 3/(4 pi) a/R <= 0.3
 ///
-/// M: moment of the loads P about m. 1/R: slope of the tool's own normals over r, by regression over the
-/// loads, where r^2 is less than 1.2 of its mean: a flat face's rounded rim does not count, nor does a
+/// M: moment of the loads P about m. a: radius of the area that carries, at least 0.7 of the farthest
+/// point's distance: contacts far apart are less stiff to a turn than a disc about them all, and lose no
+/// more than a share of what that disc has. 1/R: slope of the tool's own normals over r, by regression over
+/// the loads, where r^2 is less than 1.2 of its mean: a flat face's rounded rim does not count, nor does a
 /// hollow.
 class TwistStiffening {
  public:
@@ -42,10 +44,10 @@ class TwistStiffening {
     if (!(load > 0)) return;
     mean_ = sum_of(xs) / load, m_ = sum_of(ms).normalized();
     const SimdVec3<V> mean = each(mean_);
-    V squares{};
+    V squares{}, farthest{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const SimdVec3<V> r = system.feet().load(i) - mean;
-      squares += V(q + i) * dot(r, r);
+      squares += V(q + i) * dot(r, r), farthest = (max)(farthest, is_point(system, i) * dot(r, r));
     }
     constexpr float inner = 1.2f, pi = std::numbers::pi_v<float>;
     const V near(inner * reduce(squares) / load);
@@ -57,9 +59,9 @@ class TwistStiffening {
     }
     const float turn = reduce(turns), spread = reduce(spreads);
     if (!(turn > 0) || !(spread > 0)) return;
-    const float a = load / std::sqrt(8 * pi / 9 * reduce(pressures)),
-                kappa = (std::min)(3 / (4 * pi) * (a * turn / spread), 0.3f);
-    per_moment_ = 3 * pi / (4 * a * a * a) * kappa / (1 + kappa);
+    const float a2 = (std::max)(9 * load * load / (8 * pi * reduce(pressures)), reduce_max(farthest) / 2),
+                a = std::sqrt(a2), kappa = (std::min)(3 / (4 * pi) * (a * turn / spread), 0.3f);
+    per_moment_ = 3 * pi / (4 * a * a2) * kappa / (1 + kappa);
   }
   /// u less what the turn is less.
   void add(const PointSystem& system, const VectorList& P, VectorList& u) const noexcept {
@@ -70,10 +72,15 @@ class TwistStiffening {
       moments += dot(m, cross(system.feet().load(i) - mean, P.load(i)));
     const SimdVec3<V> turn = each(Vec3<float>(per_moment_ * reduce(moments) * m_));
     for (std::size_t i = 0; i < system.stride(); i += V::size())
-      u.store(i, u.load(i) - cross(turn, system.feet().load(i) - mean));
+      u.store(i, u.load(i) - is_point(system, i) * cross(turn, system.feet().load(i) - mean));
   }
 
  private:
+  // 0 for what fills up registers, far away, else 1.
+  [[nodiscard]] PALPATE_INLINE static V is_point(const PointSystem& system, std::size_t i) noexcept {
+    return dot(system.directions().load(i), system.directions().load(i));
+  }
+
   Vec3<float> m_ = Vec3<float>::Zero(), mean_ = Vec3<float>::Zero();
   float per_moment_ = 0;  // [1/m^3]
 };
