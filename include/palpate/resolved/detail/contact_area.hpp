@@ -117,15 +117,15 @@ template <class Rounded>
                      V(system.areas() + i) * (min)((min)(V(per_full), V(bound + i)) * V(rim + i), one), zero);
     sum = reduce(sums);
   }
-  if (!(load > 0)) return sum;
+  const float smooth_rim = reduce(rims);
+  if (!(smooth_rim > 0)) return sum;
   V squares{}, per_areas{};
   for (std::size_t i = 0; i < system.stride(); i += V::size()) {
     const V share = V(q + i) / V(load);
-    squares += share * share;
-    per_areas += select(V(q + i) > zero, share * share / V(system.areas() + i), zero);
+    squares += share * share, per_areas += share * share / V(system.areas() + i);
   }
   const float even = (std::min)(1.07f / reduce(per_areas), whole), alike = 1 / reduce(squares);
-  return std::lerp(sum, even, reduce(rims) / whole * std::clamp(2 - alike / few, 0.f, 1.f));
+  return std::lerp(sum, even, smooth_rim / whole * std::clamp(2 - alike / few, 0.f, 1.f));
 }
 
 }  // namespace palpate::detail
