@@ -150,7 +150,7 @@ TEST_CASE("a round tool is stiffer to a turn, by its slope within its rim") {
       }
     points.system.build();
     detail::TwistStiffening twist;
-    twist.measure(points.system, points.loads.data(), slopes);
+    twist.measure(points.system, points.loads.data(), {points.system, points.loads.data()}, slopes);
     twist.add(points.system, P, u);
     for (std::size_t i = points.system.size(); i < most; ++i) CHECK(u[i] == V::Zero());  // fills up registers
     // Even loads on n cells: a^2 = 9/8 of their area over pi.

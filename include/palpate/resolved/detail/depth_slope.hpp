@@ -28,11 +28,9 @@ class DepthSlope {
   using V = VectorList::V;
 
   void forget() noexcept { mean_.setZero(), by_x_.setZero(); }
-  /// With normal loads q; positions are relative to `origin` [m].
+  /// By the normal loads of `fit`, on a body that is not flat; positions are relative to `origin` [m].
   template <Real S>
-  void measure(const PointSystem& system, const float* q, const Vec3<S>& origin) noexcept {
-    if (system.is_flat()) return forget();
-    const LoadFit fit(system, q);
+  void measure(const PointSystem& system, const LoadFit& fit, const Vec3<S>& origin) noexcept {
     if (!fit.has_load()) return forget();
     const LoadFit::Linear n_t = fit.linear([&](std::size_t i) PALPATE_INLINE_LAMBDA {
       const SimdVec3<V> m = system.directions().load(i), n = system.normals().load(i);

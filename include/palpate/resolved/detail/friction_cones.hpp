@@ -7,6 +7,7 @@
 #include <palpate/core/simd_math.hpp>
 #include <palpate/resolved/detail/depth_slope.hpp>
 #include <palpate/resolved/detail/friction_problem.hpp>
+#include <palpate/resolved/detail/load_fit.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/resolved/detail/twist_stiffening.hpp>
 #include <palpate/resolved/detail/vector_list.hpp>
@@ -58,7 +59,11 @@ class FrictionCones {
   template <Real S>
   void place(const PointSystem& system, const float* loads, const Vec3<S>& origin, const Vec3<float>& g,
              FrictionLists& lists) noexcept {
-    slope.measure(system, loads, origin);
+    const LoadFit fit(system, loads);
+    if (system.is_flat())
+      slope.forget();
+    else
+      slope.measure(system, fit, origin);
     SimdVec3<V> slopes{};
     V all{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
@@ -71,7 +76,7 @@ class FrictionCones {
       slopes += q * h, all += q;
       limit_per_mu(cosine, q / V(system.areas() + i)).copy_to(&lists.per_mu[i]);
     }
-    twist.measure(system, loads, axes_);
+    twist.measure(system, loads, fit, axes_);
     const Vec3<float> mean = sum_of(slopes) / (std::max)(reduce(all), tiny);
     const auto turned = slope.over(origin, lean_ * mean + g);
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
@@ -108,8 +113,8 @@ class LinearCones {
   template <Real S>
   void place(const PointSystem& system, const float* loads, const Vec3<S>& origin, const Vec3<float>& /*g*/,
              const FrictionLists& /*lists*/) noexcept {
-    slope.measure(system, loads, origin);
-    if (slope.is_zero()) return;
+    if (system.is_flat()) return slope.forget();
+    slope.measure(system, LoadFit(system, loads), origin);
     const auto turned = slope.over(origin, Vec3<float>::Zero());
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const SimdVec3<V> m = system.directions().load(i);

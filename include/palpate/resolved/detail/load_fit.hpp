@@ -55,6 +55,7 @@ class LoadFit {
   [[nodiscard]] bool has_load() const noexcept { return load_ > 0; }
   [[nodiscard]] float load() const noexcept { return load_; }
   [[nodiscard]] const Vec3<float>& mean() const noexcept { return mean_; }
+  [[nodiscard]] const Vec3<float>& direction() const noexcept { return m_; }  ///< m
   /// r of points i .. on.
   [[nodiscard]] PALPATE_INLINE SimdVec3<V> from_mean(std::size_t i) const noexcept {
     return across(each(m_), system_.feet().load(i) - each(mean_));

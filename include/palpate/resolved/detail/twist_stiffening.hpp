@@ -4,6 +4,7 @@
 /// @file How a round tool that is pressed in is stiffer to a turn about the direction of pressing.
 
 #include <palpate/core/simd_math.hpp>
+#include <palpate/resolved/detail/load_fit.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/resolved/detail/vector_list.hpp>
 
@@ -30,24 +31,20 @@ class TwistStiffening {
  public:
   using V = VectorList::V;
 
-  /// With normal loads q and the tool's slopes to the directions of pressing.
-  void measure(const PointSystem& system, const float* q, const VectorList& slopes) noexcept {
+  /// With normal loads q, which `fit` is of, and the tool's slopes to the directions of pressing.
+  void measure(const PointSystem& system, const float* q, const LoadFit& fit,
+               const VectorList& slopes) noexcept {
     per_moment_ = 0;
-    V loads{}, pressures{};
-    SimdVec3<V> xs{}, ms{};
+    if (!fit.has_load()) return;
+    mean_ = fit.mean(), m_ = fit.direction();
+    const float load = fit.load();
+    const SimdVec3<V> mean = each(mean_);
+    V pressures{}, squares{}, farthest{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const V qi(q + i);
-      loads += qi, pressures += qi * (qi / V(system.areas() + i));
-      xs += qi * system.feet().load(i), ms += qi * system.directions().load(i);
-    }
-    const float load = reduce(loads);
-    if (!(load > 0)) return;
-    mean_ = sum_of(xs) / load, m_ = sum_of(ms).normalized();
-    const SimdVec3<V> mean = each(mean_);
-    V squares{}, farthest{};
-    for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const SimdVec3<V> r = system.feet().load(i) - mean;
-      squares += V(q + i) * dot(r, r), farthest = (max)(farthest, is_point(system, i) * dot(r, r));
+      pressures += qi * (qi / V(system.areas() + i)), squares += qi * dot(r, r);
+      farthest = (max)(farthest, is_point(system, i) * dot(r, r));
     }
     constexpr float inner = 1.2f, pi = std::numbers::pi_v<float>;
     const V near(inner * reduce(squares) / load);
