@@ -123,7 +123,7 @@ TEST_CASE("cones turn with a curved body's normals over ticks, wherever position
   points.place(cones);
   constexpr float slope = 3e-3f / R;                                     // at the first point
   CHECK_RELATIVE(cones.axes(points.system)[0].x(), slope / 2, exactly);  // the mean of none and this tick's
-  for (int tick = 0; tick < 24; ++tick) points.place(cones);
+  for (int tick = 0; tick < 40; ++tick) points.place(cones);
   CHECK_RELATIVE(cones.axes(points.system)[0].x(), slope, exactly);
   // The same point as seen from another origin.
   const auto turned = cones.slope.over(Vec3<double>(0.01, 0, 0), V::Zero());

@@ -21,8 +21,10 @@ namespace palpate::detail {
 /// is the slope by which the undeformed surface is turned from m. Taken is its regression over the loads,
 /// mean + S (x - mean x): its loads q n_t have the same sum and the same moment. Where a point passes a sharp
 /// edge of the body n changes at once, the regression by that point's share of the load. And since friction
-/// carries the surface after the loads, it is the mean of the last ticks' and this one's. By each point's own
-/// n_t a ball that slides over a box's edge is swung from tick to tick by a quarter of its force.
+/// carries the surface after the loads, a fifth of it is this tick's, the rest the last one's at this one's
+/// mean x: on a smooth body both are the same. At its own mean x, which the cones move with the loads, the
+/// force would swing every other tick. By each point's own n_t a ball that slides over a box's edge is swung
+/// from tick to tick by a quarter of its force.
 class DepthSlope {
  public:
   using V = VectorList::V;
@@ -36,8 +38,11 @@ class DepthSlope {
       const SimdVec3<V> m = system.directions().load(i), n = system.normals().load(i);
       return V(1.f) / (max)(dot(n, m), V((std::numeric_limits<float>::min)())) * n - m;
     });
-    mean_ = (mean_ + n_t.mean) / 2, by_x_ = (by_x_ + n_t.by_x) / 2;
-    at_ = origin.template cast<double>() + fit.mean().cast<double>();
+    const Vec3<double> at = origin.template cast<double>() + fit.mean().cast<double>();
+    const Vec3<float> last_there = mean_ + by_x_ * (at - at_).template cast<float>();
+    const float share = is_zero() ? 0.5f : of_a_tick;
+    mean_ = last_there + share * (n_t.mean - last_there), by_x_ += share * (n_t.by_x - by_x_);
+    at_ = at;
   }
   [[nodiscard]] bool is_zero() const noexcept { return mean_.isZero(0) && by_x_.isZero(0); }
   /// n_t at x, relative to `origin`, less g.
@@ -51,6 +56,8 @@ class DepthSlope {
   }
 
  private:
+  static constexpr float of_a_tick = 0.2f;  // 0.5: the force over a box's edge changes twice as fast
+
   Vec3<float> mean_ = Vec3<float>::Zero();
   Mat3<float> by_x_ = Mat3<float>::Zero();  // S [1/m]
   Vec3<double> at_ = Vec3<double>::Zero();  // mean x [m]
