@@ -155,8 +155,8 @@ class ResolvedState {
       for (const TouchingPoint& c : touching_)
         if (PointMemory& p = points_[c.point]; p.loaded)
           p.anchor += Vec3<S>(X * tool.point(c.point) - before * tool.point(c.point)).template cast<float>();
+    inside_.clear(), strain_.take_depth(system_.deepest());
     // First those that carry load or came near to it.
-    inside_.clear();
     for (std::uint32_t c = 0; c < touching_.size(); ++c) {
       const PointMemory& p = points_[touching_[c].point];
       if (p.loaded || p.sunk - touching_[c].depth < near * system_.deepest()) inside_.push_back(c);
@@ -210,7 +210,7 @@ class ResolvedState {
     for (std::size_t i = 0; i < size(); ++i) {
       if constexpr (Shift::active)
         system_.depth[i] += touching_[inside_[i]].shifted * shift_.deeper(system_.direction(i));
-      system_.depth[i] = strain_.factor() * system_.depth[i];
+      system_.depth[i] = strain_.depth(system_.depth[i]);
       if constexpr (RegularPart::active) system_.depth[i] -= point(i).held;
       last_.set(i, point(i));
       if constexpr (has_friction && Strain::active) cones_.outward.set(i, touching_[inside_[i]].outward);
@@ -310,7 +310,7 @@ class ResolvedState {
       depth += at.shifted * shift_.deeper(m);
       float gap = system_.normal_displacement_at(pressure_.q.data(), foot, m,
                                                  static_cast<float>(tool.area(at.point))) -
-                  strain_.factor() * depth + p.held;
+                  strain_.depth(depth) + p.held;
       if constexpr (Beside::active) gap += m.dot(beside_.displacement_at(foot, m) - beside_.v());
       if constexpr (RegularPart::active)
         gap += regular_.normal_at(force.compliance(), acts_at(foot), p.triangle, m);
