@@ -266,7 +266,6 @@ TEST_CASE("finite strain: Hertz's pressure has the strain d/R, and nu turns soft
     for (std::size_t i = 0; i < system.size(); ++i) {
       const float share = system.foot(i).squaredNorm() / (a * a);
       r_of_ball[i] = 0.004f * (1 - share / 2) - system.depth[i];
-      none.set(i, Vec3<float>::Zero());
     }
     round.measure(system, loads, q.data(), r_of_ball.data(), none, detail::NoLoadsBeside(0, 0, 0));
     const double d_0 = 0.004, s = 3 * softening, c = softening + 1.3 * s;
@@ -276,6 +275,7 @@ TEST_CASE("finite strain: Hertz's pressure has the strain d/R, and nu turns soft
       CHECK(std::abs(round.depth(static_cast<float>(d)) - expected) <=
             0.05 * std::abs(c) * (std::max)(d, d_0));  // measured 0.035, of 1,257 cells
     }
+    // Measured 6e-4: f is 0.195 of 1,257 cells.
     CHECK_RELATIVE(1 + round.beside(Vec3<float>::UnitY(), 1).y(), (1 + c) / (1 + 7. / 6 * s), 1e-3);
     // Across: a bonded patch's drag, over its force 8 mu a delta_t/(2 - nu), at the depth of a punch of the
     // same mean pressure, 2 a/(3 R) of its radius.
@@ -371,17 +371,17 @@ TEST_CASE("a flat face that slides over a convex body takes mu N, though it carr
        .friction = CoulombFriction<double>({.mu_static = mu, .mu_dynamic = mu})});
   const double height = 0.044 - deep;
   for (int i = 0; i <= 100; ++i) (void)solver.tick(at(0, height + deep * (100 - i) / 100), 1e-3);
-  V force, last, before;
-  double jerk = 0;
+  V force = V::Zero(), last = force, before = force;
+  double swing = 0;  // second difference of the force, over it
   for (int i = 1; i <= 200; ++i) {
     before = last, last = force;
     force = solver.tick(at(0, height, 3e-5 * i), 1e-3).wrench.force;
-    if (i > 100) jerk = (std::max)(jerk, (force - 2 * last + before).norm() / force.norm());
+    if (i > 100) swing = (std::max)(swing, (force - 2 * last + before).norm() / force.norm());
   }
   REQUIRE(solver.contacts()[0].mode == ContactMode::sliding);
   // The cones' slope answers to the loads, which it moves. Measured: 2e-4; 3e-3, every other tick, if ticks'
   // means are averaged that belong to different positions.
-  CHECK(jerk <= 1e-3);
+  CHECK(swing <= 1e-3);
   // Finite strain's limit is above mu where the face's normal is not m (friction_cones.hpp). Measured: 6 %;
   // with w across m in the gradient of the regular part 50 %.
   CHECK_RELATIVE(-force.z() / force.y(), mu, 0.1);

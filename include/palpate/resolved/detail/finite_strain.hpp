@@ -81,10 +81,9 @@ class FiniteStrain {
     const V zero(0.f);
     V loads{}, pressures{}, sunks{}, rests{}, nears{}, nearest{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
-      const V qi(q + i), beside = dot(system.directions().load(i), given.beyond(i)),
-                         sunk = V(r + i) + V(&system.depth[i]) + beside,
-                         rest = dot(system.directions().load(i), w.load(i)) + beside,
-                         near = sunk - (max)(rest, zero);
+      const SimdVec3<V> m = system.directions().load(i);
+      const V qi(q + i), beside = dot(m, given.beyond(i)), rest = dot(m, w.load(i)) + beside,
+                         sunk = V(r + i) + V(&system.depth[i]) + beside, near = sunk - (max)(rest, zero);
       loads += qi, pressures += qi * qi / V(system.areas() + i);
       sunks += qi * sunk, rests += qi * rest, nears += qi * near;
       nearest = (max)(nearest, select(qi > zero, near, zero));
