@@ -30,6 +30,7 @@ struct Points {
   detail::PointSystem system;
   detail::FrictionLists lists;
   AlignedList<float> loads;
+  float passes = 0;  ///< how far tractions point the same way
 
   explicit Points(double nu, const V& m = -V::UnitY()) : system(most, static_cast<float>(1 - 2 * nu), true) {
     lists.resize(most), loads.resize(most);
@@ -42,13 +43,13 @@ struct Points {
     system.add(x, normal, 0, 1e-6f);
   }
   void place(auto& cones, const V& g = V::Zero(), const Vec3<double>& origin = Vec3<double>::Zero()) {
-    cones.place(system, loads.data(), origin, g, lists);
+    cones.place(system, loads.data(), origin, g, passes, lists);
   }
 };
 
 }  // namespace
 
-TEST_CASE("the limit of tractions grows with the slope up to a rim's, and halves at most under pressure") {
+TEST_CASE("the limit of tractions grows with the slope up to a rim's, and halves at most where it passes") {
   constexpr double nu = 0.3;
   Points points(nu);
   points.add(V::Zero(), -V::UnitY(), 0);
@@ -68,7 +69,11 @@ TEST_CASE("the limit of tractions grows with the slope up to a rim's, and halves
                  1e-6);  // rounding of float, here and below
   CHECK(limit(0.7f, 0) == limit(0.8f, 0));
   CHECK(limit(-1, 0) == limit(0.8f, 0));
-  CHECK_RELATIVE(limit(0.9f, 1e-7f) / limit(0.9f, 0), 1 - (1 - 2 * nu) * std::numbers::pi * 0.1, 1e-6);
+  // Pressure counts by how far the surface passes.
+  CHECK(limit(0.9f, 1e-7f) == limit(0.9f, 0));
+  points.passes = 0.6f;
+  CHECK_RELATIVE(limit(0.9f, 1e-7f) / limit(0.9f, 0), 1 - 0.6 * (1 - 2 * nu) * 2 * std::numbers::pi / 3 * 0.1,
+                 1e-6);
   CHECK(limit(1, 1) == 0.5f);
 }
 
@@ -132,38 +137,45 @@ TEST_CASE("cones turn with a curved body's normals over ticks, wherever position
   CHECK(cones.slope.is_zero());
 }
 
-TEST_CASE("a round tool is stiffer to a turn, by its slope within its rim") {
-  constexpr float R = 0.02f, cell = 1e-6f;
-  const auto turned = [&](auto slope) {  // u by loads that turn, over r, and what the formula has
-    Points points(0.5);
-    detail::VectorList slopes, P, u;
-    for (auto* list : {&slopes, &P, &u}) list->resize(most);
+TEST_CASE(
+    "a contact is stiffer to a turn by its tool's slope within the rim, drawn in, and pressed densely") {
+  constexpr float R = 0.02f, cell = 1e-6f, q = 1e-9f, pi = std::numbers::pi_v<float>;
+  // u by loads that turn, over r, less what the formula has, over that. Friction has drawn the surface
+  // together by `strain`, and moved it all.
+  const auto off = [&](double nu, float strain, auto slope, float tool) {
+    Points points(nu);
+    detail::VectorList slopes, anchors, P, u;
+    for (auto* list : {&slopes, &anchors, &P, &u}) list->resize(most);
     float moment = 0;
     for (int i = -4; i <= 4; ++i)
       for (int k = -4; k <= 4; ++k) {
         const V x = 1e-3f * V(float(i), 0, float(k));
         if (i * i + k * k > 18) continue;
         const std::size_t n = points.system.size();
-        slopes.set(n, slope(x)), P.set(n, x.cross(V::UnitY()));
+        slopes.set(n, slope(x)), anchors.set(n, V(1e-4f, 0, 0) - strain * x), P.set(n, x.cross(V::UnitY()));
         moment += x.squaredNorm();
-        points.add(x, -V::UnitY(), 1e-9f);
+        points.add(x, -V::UnitY(), q);
       }
     points.system.build();
     detail::TwistStiffening twist;
-    twist.measure(points.system, points.loads.data(), {points.system, points.loads.data()}, slopes);
+    twist.measure(points.system, points.loads.data(), {points.system, points.loads.data()}, slopes, anchors);
     twist.add(points.system, P, u);
     for (std::size_t i = points.system.size(); i < most; ++i) CHECK(u[i] == V::Zero());  // fills up registers
     // Even loads on n cells: a^2 = 9/8 of their area over pi.
-    const float a = std::sqrt(9 * cell * float(points.system.size()) / (8 * std::numbers::pi_v<float>)),
-                kappa = 3 / (4 * std::numbers::pi_v<float>)*a / R;
-    return std::pair(-u[0].dot(P[0]) / P[0].squaredNorm(),
-                     3 * std::numbers::pi_v<float> / (4 * a * a * a) * kappa / (1 + kappa) * moment);
+    const float a = std::sqrt(9 * cell * float(points.system.size()) / (8 * pi)),
+                dense = 4 * pi / 3 * static_cast<float>(1 - 2 * nu) * q / cell,
+                whole = (1 + 3 / (4 * pi) * a * tool) * (1 + 3 * strain) * (1 + dense),
+                expected = 3 * pi / (4 * a * a * a) * (1 - 1 / whole) * moment;
+    return expected == 0 ? u[0].norm() : -u[0].dot(P[0]) / P[0].squaredNorm() / expected - 1;
   };
-  const auto [ball, expected] = turned([&](const V& x) { return V(x / R); });
-  CHECK_RELATIVE(ball, expected, 1e-5);  // rounding of float
+  const auto ball = [&](const V& x) { return V(x / R); };
+  for (const auto& [nu, strain] : {std::pair(0.5, 0.f), {0.5, 0.04f}, {0.3, 0.f}, {0.3, 0.04f}})
+    CHECK(std::abs(off(nu, strain, ball, 1 / R)) <= 1e-4f);  // rounding of float, of a fiftieth of 1
   // Slopes of a rim alone do not count, nor do those of a hollow.
-  CHECK(turned([&](const V& x) { return V(x.norm() > 4e-3f ? V(x / R) : V::Zero()); }).first == 0);
-  CHECK(turned([&](const V& x) { return V(-x / R); }).first == 0);
+  CHECK(off(
+            0.5, 0, [&](const V& x) { return V(x.norm() > 4e-3f ? ball(x) : V::Zero()); }, 0) == 0);
+  CHECK(off(
+            0.5, 0, [&](const V& x) { return V(-ball(x)); }, 0) == 0);
 }
 
 TEST_CASE("on a curved body, too, friction of 0.001 is felt as none, and the tool feels the loads") {

@@ -7,6 +7,7 @@
 #include <palpate/core/aligned_list.hpp>
 #include <palpate/core/scalar.hpp>
 #include <palpate/geometry/concept.hpp>
+#include <palpate/resolved/detail/contact_turn.hpp>
 #include <palpate/resolved/detail/vector_list.hpp>
 
 #include <algorithm>
@@ -16,9 +17,10 @@
 
 namespace palpate::detail {
 
-/// The mean of the displacements across, a, of loaded points near x, by their pressures q:
+/// Half the turn of the whole contact, T x - x from where it is now (contact_turn.hpp), and the mean of what
+/// else the displacements across, a, of loaded points near x have, b, by their pressures q:
 ///
-///     s(x) = sum q phi a / max(sum q phi, 0.1 sum q),   phi = (1 + r^2/A)^-2,   |a| <= sqrt(A)
+///     s(x) = x - T x + sum q phi b / max(sum q phi, 0.1 sum q),   phi = (1 + r^2/A)^-2,   |b| <= sqrt(A)
 ///
 /// A: the loaded area. One smooth field, for loaded points and for those that are to come in, so that s does
 /// not jump where a point does. It fades some widths beyond the contact.
@@ -37,10 +39,12 @@ class CarriedSurface {
     origin_ = origin;
     size_ = 0;
     total_ = area_ = most_ = 0;
+    turn_ = {};
   }
-  /// A loaded point at x [m], which the surface has followed by a [m], its q [m^2] and its cell [m^2]. Points
-  /// of the same `group` follow each other and lie side by side; they count as one.
-  void add(std::uint32_t group, const Vec3<float>& x, float q, const Vec3<float>& a, float area) noexcept {
+  /// A loaded point at x [m], which the surface has followed by a [m], its direction of pressing m, q [m^2]
+  /// and cell [m^2]. Points of the same `group` follow each other and lie side by side; they count as one.
+  void add(std::uint32_t group, const Vec3<float>& x, float q, const Vec3<float>& a, const Vec3<float>& m,
+           float area) noexcept {
     if (size_ == 0 || group != group_) {
       group_ = group;
       x_.set(size_, Vec3<float>::Zero()), a_.set(size_, Vec3<float>::Zero());
@@ -51,34 +55,55 @@ class CarriedSurface {
     x_.set(g, x_[g] + q * x);
     a_.set(g, a_[g] + q * a);
     total_ += q, area_ += area;
-    most_ = (std::max)(most_, a.squaredNorm());
+    turn_.add(x, q, a, m);
   }
   /// After the last add().
   void build() noexcept {
-    most_ = std::sqrt(most_);
-    const float longest = std::sqrt(area_), share = most_ > longest ? longest / most_ : 1.f;
-    most_ *= share;
-    for (std::size_t g = 0; g < size_; ++g) {
-      x_.set(g, x_[g] / weight_[g]);
-      a_.set(g, share * a_[g]);
-    }
+    turn_.build();
+    V most2{};
     for (std::size_t g = size_; g < padded<V>(size_); ++g) {
       for (auto* list : {&x_, &a_}) list->set(g, Vec3<float>::Zero());
       weight_[g] = 0;
     }
+    for (std::size_t g = 0; g < size_; g += V::size()) {
+      const V q(&weight_[g]), per_q = V(1.f) / (max)(q, V((std::numeric_limits<float>::min)()));
+      const SimdVec3<V> x = per_q * x_.load(g), a = per_q * a_.load(g), b = turn_.beside(x, a);
+      most2 = (max)(most2, select(q > V(0.f), dot(b, b), V(0.f)));
+      x_.store(g, x), a_.store(g, q * b);
+    }
+    most_ = std::sqrt(reduce_max(most2));
+    const float longest = std::sqrt(area_), share = most_ > longest ? longest / most_ : 1.f;
+    for (std::size_t g = 0; g < size_; g += V::size()) a_.store(g, V(share) * a_.load(g));
+    most_ = share * most_ + turn_.most();
   }
 
   /// At least |s| anywhere [m].
   [[nodiscard]] float most() const noexcept { return most_; }
   /// A leaf of the tool's points over the surface as it lay before.
   [[nodiscard]] PointBatch<S> before(const PointBatch<S>& now) const noexcept {
-    return less(now, Vec3<S>(at({now.x[0], now.y[0], now.z[0]}).template cast<S>()));
+    if (!(most_ > 0)) return now;
+    const Vec3<S> first(now.x[0], now.y[0], now.z[0]);
+    PointBatch<S> x = less(now, Vec3<S>(at((first - origin_).template cast<float>()).template cast<S>()));
+    if (turn_.is_zero()) return x;
+    using W = batch_simd<S>;
+    for (std::size_t i = 0; i < batch_size; i += W::size()) {
+      const SimdVec3<W> turned = turn_.from_now(load_from<W>(now, i, origin_));
+      store(&x.x[i], load<W>(&x.x[i]) + turned.x);
+      store(&x.y[i], load<W>(&x.y[i]) + turned.y);
+      store(&x.z[i], load<W>(&x.z[i]) + turned.z);
+    }
+    return x;
+  }
+  /// Where what the last add()s placed at x was before friction turned it.
+  [[nodiscard]] Vec3<float> at_rest(const Vec3<float>& x) const noexcept {
+    const SimdVec3<float> back = turn_.from_half_way(each<float>(x));
+    return x + Vec3<float>(back.x, back.y, back.z);
   }
 
  private:
-  [[nodiscard]] Vec3<float> at(const Vec3<S>& x) const noexcept {
-    if (!(most_ > 0)) return Vec3<float>::Zero();
-    const SimdVec3<V> here = each(Vec3<float>((x - origin_).template cast<float>()));
+  // The mean, without the turn.
+  [[nodiscard]] Vec3<float> at(const Vec3<float>& x) const noexcept {
+    const SimdVec3<V> here = each(x);
     const V one(1.f), per_area(1 / area_);
     SimdVec3<V> sum{};
     V near{};
@@ -96,6 +121,7 @@ class CarriedSurface {
   std::size_t size_ = 0;
   std::uint32_t group_ = 0;
   float total_ = 0, area_ = 0, most_ = 0;
+  ContactTurn turn_;
 };
 
 /// Without friction: nowhere.
@@ -104,6 +130,7 @@ struct StillSurface {
   static void clear(const auto& /*origin*/) noexcept {}
   [[nodiscard]] static int most() noexcept { return 0; }
   [[nodiscard]] static const auto& before(const auto& x) noexcept { return x; }
+  [[nodiscard]] static const auto& at_rest(const auto& x) noexcept { return x; }
 };
 
 }  // namespace palpate::detail

@@ -34,6 +34,9 @@ namespace palpate::detail {
 ///     K P (1 + c) + W P = d + r,   r = s d_0 x (2 - x),   x = min(d/d_0, 1),   c = k e + (1 + 3/2 f) s
 ///     s = 3 k e min(5 f, 1) >= -0.15,   f = 1 - mean by load of K P / d_0
 ///
+/// Narrower only as far as friction does not hold the surface, which is then not drawn in: s < 0 is less by
+/// the share `held`.
+///
 /// f: 1/5 under a ball, 1/3 under a cone, 0 under a flat face, which has no rim to move. c leaves the force
 /// of a ball and of a flat face as it is: to r it answers by a flat punch's pressure on the same area. 3 is
 /// chosen on a ball on an ellipsoid, whose area is 6 % too small at nu = 0.49 and 8 % too large at 0.3
@@ -75,9 +78,10 @@ class FiniteStrain {
     common_.setZero(), stiffened_.setZero(), shift_.setZero();
   }
   /// After a solve for the loads P, q along the directions of pressing: r, displacements along these less the
-  /// depths; w, the regular part, and `given`, by others' loads, both of which are not K P [m].
+  /// depths; w, the regular part, and `given`, by others' loads, both of which are not K P [m]; how firmly
+  /// friction held the surface in the last tick (reaction.hpp).
   void measure(const PointSystem& system, const VectorList& P, const float* q, const float* r,
-               const VectorList& w, const auto& given) noexcept {
+               const VectorList& w, const auto& given, float held) noexcept {
     const V zero(0.f);
     V loads{}, pressures{}, sunks{}, rests{}, nears{}, nearest{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
@@ -93,7 +97,8 @@ class FiniteStrain {
     if (!(load > 0) || !(sunk > 0)) return;
     const float root = root_of_strain_ * pressed / load, e = root * root, ke = k_ * e / std::sqrt(1 + e * e);
     const float fall = deepest > 0 ? clamp(1 - reduce(nears) / (load * deepest), 0.f, 1.f) : 0;
-    wider_ = (std::max)(3 * ke * (std::min)(5 * fall, 1.f), -0.15f);
+    const float wider = (std::max)(3 * ke * (std::min)(5 * fall, 1.f), -0.15f);
+    wider_ = wider < 0 ? (1 - held) * wider : wider;
     const float softer = ke + (1 + 1.5f * fall) * wider_;
     deepest_share_ = system.deepest() > 0 ? (std::min)(deepest / system.deepest(), 2.f) : 0;
     take_depth(system.deepest());

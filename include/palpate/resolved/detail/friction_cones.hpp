@@ -36,9 +36,13 @@ namespace palpate::detail {
 ///
 /// Where a tool slides, friction takes mu p per area of its surface and length of the body's surface that
 /// passes it. Of a slope h both are larger than seen along m, by sqrt(1 + h^2) and sqrt(1 + h^2/2), the mean
-/// over directions. And p has pressed together what passes, by (1 - 2 nu) p/(4 mu) on a half-space:
+/// over directions. And p has pressed together what passes, by (1 - 2 nu) p/(4 mu) on a half-space, and two
+/// thirds of that where friction drags it in (chosen on finite elements). Nothing passes where a tool
+/// turns in place, so it counts by w, how far all tractions t point the same way:
 ///
-///     s = sqrt(1 + h^2) sqrt(1 + h^2/2) (1 - (1 - 2 nu) pi q/A),   h <= 3/4, the last factor >= 1/2
+///     s = sqrt(1 + h^2) sqrt(1 + h^2/2) (1 - w (1 - 2 nu) 2 pi/3 q/A),   w = |sum t|^2/(sum |t|)^2
+///
+/// h <= 3/4, the last factor >= 1/2; w of the last tick (reaction.hpp).
 ///
 /// What is steeper is a tool's rim, round which nothing slides; 3/4 is chosen on finite elements.
 class FrictionCones {
@@ -46,7 +50,7 @@ class FrictionCones {
   using V = VectorList::V;
   FrictionCones(double nu, std::size_t points)
       : lean_(static_cast<float>((std::min)(2 * (1 - 2 * nu), 1.))),
-        strain_across_(static_cast<float>(-(1 - 2 * nu) * std::numbers::pi)) {
+        strain_across_(static_cast<float>(-2 * (1 - 2 * nu) * std::numbers::pi / 3)) {
     axes_.resize(AlignedList<float>::padded(points));
     outward.resize(AlignedList<float>::padded(points));
   }
@@ -58,7 +62,7 @@ class FrictionCones {
   /// Axes, and s to `lists.per_mu`, for normal loads q, at positions relative to `origin`.
   template <Real S>
   void place(const PointSystem& system, const float* loads, const Vec3<S>& origin, const Vec3<float>& g,
-             FrictionLists& lists) noexcept {
+             float passes, FrictionLists& lists) noexcept {
     const LoadFit fit(system, loads);
     if (system.is_flat())
       slope.forget();
@@ -74,9 +78,9 @@ class FrictionCones {
       const SimdVec3<V> h = (min)(most, V(1.f)) * steep;
       axes_.store(i, h);
       slopes += q * h, all += q;
-      limit_per_mu(cosine, q / V(system.areas() + i)).copy_to(&lists.per_mu[i]);
+      limit_per_mu(cosine, V(passes) * q / V(system.areas() + i)).copy_to(&lists.per_mu[i]);
     }
-    twist.measure(system, loads, fit, axes_);
+    twist.measure(system, loads, fit, axes_, lists.anchor);
     const Vec3<float> mean = sum_of(slopes) / (std::max)(reduce(all), tiny);
     const auto turned = slope.over(origin, lean_ * mean + g);
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
@@ -98,7 +102,7 @@ class FrictionCones {
     return area * stretch * (V(1.f) + strain);
   }
 
-  float lean_, strain_across_;  // p/(4 mu) = pi q/A
+  float lean_, strain_across_;  // p/(6 mu) = 2 pi/3 q/A
   VectorList axes_;
 };
 
@@ -112,7 +116,7 @@ class LinearCones {
 
   template <Real S>
   void place(const PointSystem& system, const float* loads, const Vec3<S>& origin, const Vec3<float>& /*g*/,
-             const FrictionLists& /*lists*/) noexcept {
+             float /*passes*/, const FrictionLists& /*lists*/) noexcept {
     if (system.is_flat()) return slope.forget();
     slope.measure(system, LoadFit(system, loads), origin);
     const auto turned = slope.over(origin, Vec3<float>::Zero());

@@ -34,6 +34,7 @@ class Reaction {
   [[nodiscard]] Vec3<float> felt(const LoadLists& /*result*/, std::size_t i) const noexcept {
     return felt_[i];
   }
+  [[nodiscard]] static float held() noexcept { return 0; }
 
  private:
   VectorList felt_;
@@ -50,22 +51,30 @@ class Reaction<true> {
   /// `moved`: what the solve has left out of all displacements.
   void measure(const PointSystem& system, const VectorList& axes, const AlignedList<float>& q,
                const FrictionLists& result, const auto& beside, const Vec3<float>& moved) noexcept {
-    const V zero(0.f), one(1.f);
+    const V zero(0.f), one(1.f), tiny((std::numeric_limits<float>::min)());
     const SimdVec3<V> all = each<V>(moved);
-    V total{}, sticking{};
+    V total{}, sticking{}, rubbed{}, sizes{};
+    SimdVec3<V> sum{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const SimdVec3<V> u = result.u.load(i);
       const V qi(&q[i]), limit = V(result.mu) * V(&result.per_mu[i]) * qi, limit2 = limit * limit;
       const SimdVec3<V> t = result.load.load(i) - qi * axes.load(i);
-      const auto sticks = dot(t, t) < V(slips_from) * limit2, holds = sticks && V(&result.anchored[i]) > zero;
+      const V t2 = dot(t, t);
+      const auto sticks = t2 < V(slips_from) * limit2, holds = sticks && V(&result.anchored[i]) > zero;
       const SimdVec3<V> a = result.anchor.load(i),
                         kept{select(holds, a.x, u.x), select(holds, a.y, u.y), select(holds, a.z, u.z)};
       anchor_.store(i, across(system.directions().load(i), beside.load(i) + kept + all));
       select(sticks, one, zero).copy_to(&sticks_[i]);
       total += qi, sticking += select(sticks, qi, zero);
+      rubbed += qi * select(sticks, t2 / (max)(limit2, tiny), one);
+      sum += t, sizes += t2 * inverse_sqrt((max)(t2, tiny));
     }
     total_ = reduce(total), sticking_ = reduce(sticking);
+    held_ = total_ > 0 ? 1 - reduce(rubbed) / total_ : 1;
+    const float size = reduce(sizes);
+    passes_ = size > 0 ? sum_of(sum).squaredNorm() / (size * size) : 0;
   }
+  void forget() noexcept { held_ = 1, passes_ = 0; }
 
   [[nodiscard]] static Vec3<float> felt(const FrictionLists& result, std::size_t i) noexcept {
     return result.load[i];
@@ -75,11 +84,15 @@ class Reaction<true> {
   /// Sums of normal loads: of all points, and of those that stick.
   [[nodiscard]] float total() const noexcept { return total_; }
   [[nodiscard]] float sticking() const noexcept { return sticking_; }
+  /// How firmly friction holds the contact: mean by load of 1 - (t/limit)^2; 1 as it begins.
+  [[nodiscard]] float held() const noexcept { return held_; }
+  /// How far all tractions point the same way, |sum t|^2/(sum |t|)^2: 1 where a tool slides on.
+  [[nodiscard]] float passes() const noexcept { return passes_; }
 
  private:
   VectorList anchor_;
   AlignedList<float> sticks_;  // 1, or 0
-  float total_ = 0, sticking_ = 0;
+  float total_ = 0, sticking_ = 0, held_ = 1, passes_ = 0;
 };
 
 }  // namespace palpate::detail

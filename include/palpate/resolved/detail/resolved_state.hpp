@@ -74,7 +74,7 @@ class ResolvedState {
       if (!p.loaded) continue;
       const auto in_S = [](const Vec3<float>& a) -> Vec3<S> { return a.template cast<S>(); };
       const Vec3<float> m = system_.direction(i);
-      out.push_back({origin_ + in_S(system_.foot(i)), in_S(m), per_load_ * in_S(p.load),
+      out.push_back({origin_ + in_S(carried_.at_rest(system_.foot(i))), in_S(m), per_load_ * in_S(p.load),
                      static_cast<S>(system_.area(i)), per_load_ * in_S(strain_.beside(m, m.dot(p.load))),
                      in_S(strain_.shift()), contacts_[k++].position, in_S(touching_[inside_[i]].outward)});
     }
@@ -170,7 +170,7 @@ class ResolvedState {
       left_out |= solve_inside(force, friction, tolerance);
       if constexpr (Strain::active)
         strain_.measure(system_, result_.load, pressure_.q.data(), pressure_.r.data(), regular_.response(),
-                        beside_);
+                        beside_, reaction_.held());
       const bool again = Strain::active && first && round == 0;  // the strain was not known
       if (round == most_rounds || !take_in(force, tool, tolerance, again, left_out)) break;
     }
@@ -192,7 +192,7 @@ class ResolvedState {
   void forget() noexcept {
     slides_ = false, strength_ = {}, carried_.clear(origin_);
     shift_.forget(), gradient_.forget(), beside_.drop();
-    if constexpr (has_friction) cones_.slope.forget(), result_.step = 0;
+    if constexpr (has_friction) cones_.slope.forget(), reaction_.forget(), result_.step = 0;
     if constexpr (Strain::active) strain_.forget(), regular_.take_in();
   }
   // Where a load at `foot` acts, seen from afar.
@@ -284,7 +284,7 @@ class ResolvedState {
       }
     }
     if constexpr (has_friction)
-      cones_.place(system_, pressure_.q.data(), origin_, gradient_.slope(), result_);
+      cones_.place(system_, pressure_.q.data(), origin_, gradient_.slope(), reaction_.passes(), result_);
   }
 
   /// Takes in points that the surface has not given way to, or holds them where they are: w was `left_out` in
@@ -354,7 +354,7 @@ class ResolvedState {
         p.anchor = reaction_.anchor(i);
         const Vec3<float> m = system_.direction(i);
         carried_.add(at.point / static_cast<std::uint32_t>(batch_size), at.x, q,
-                     beside_.own(shift_.own(p.anchor, m, at.shifted), m),
+                     beside_.own(shift_.own(p.anchor, m, at.shifted), m), m,
                      static_cast<float>(tool.area(at.point)));
       }
       contacts_.push_back({at.point, p.sticks, pose_ * tool.point(at.point), -at.m.template cast<S>(),

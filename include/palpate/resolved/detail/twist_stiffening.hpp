@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file How a round tool that is pressed in is stiffer to a turn about the direction of pressing.
+/// @file How a contact that is pressed in is stiffer to a turn about the direction of pressing.
 
 #include <palpate/core/simd_math.hpp>
 #include <palpate/resolved/detail/load_fit.hpp>
@@ -22,6 +22,15 @@ namespace palpate::detail {
 ///
 ///     u = K P + W P - 3 pi/(4 a^3) kappa/(1 + kappa) m x (x - mean x) M,   kappa = 3/(4 pi) a/R <= 0.3
 ///
+/// Where friction has drawn the surface together under the tool, by the strain e, and holds it there, the
+/// contact is wider by that in the undeformed body, and a disc as much wider stiffer by 3 e. And rubber that
+/// is pressed together, by (1 - 2 nu) p/mu at the surface, is stiffer to shear by 2/3 of that, of which it
+/// counts half, for it falls off with depth as the turn does:
+///
+///     1 + kappa = (1 + 3/(4 pi) a/R) (1 + 3 e) (1 + (1 - 2 nu) p/(3 mu))
+///
+/// each part at most 0.3, 0.3, 0.2; e: regression over r of what points hold, by load; p: mean by load.
+///
 /// M: moment of the loads P about m. a: radius of the area that carries, at least 0.7 of the farthest
 /// point's distance: contacts far apart are less stiff to a turn than a disc about them all, and lose no
 /// more than a share of what that disc has. 1/R: slope of the tool's own normals over r, by regression over
@@ -31,9 +40,10 @@ class TwistStiffening {
  public:
   using V = VectorList::V;
 
-  /// With normal loads q, which `fit` is of, and the tool's slopes to the directions of pressing.
-  void measure(const PointSystem& system, const float* q, const LoadFit& fit,
-               const VectorList& slopes) noexcept {
+  /// With normal loads q, which `fit` is of, the tool's slopes to the directions of pressing, and where
+  /// points that stick hold the surface.
+  void measure(const PointSystem& system, const float* q, const LoadFit& fit, const VectorList& slopes,
+               const VectorList& anchors) noexcept {
     per_moment_ = 0;
     if (!fit.has_load()) return;
     mean_ = fit.mean(), m_ = fit.direction();
@@ -48,16 +58,20 @@ class TwistStiffening {
     }
     constexpr float inner = 1.2f, pi = std::numbers::pi_v<float>;
     const V near(inner * reduce(squares) / load);
-    V turns{}, spreads{};
+    V turns{}, spreads{}, drawn{}, all2{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const SimdVec3<V> r = system.feet().load(i) - mean;
       const V r2 = dot(r, r), w = V(q + i) * (max)(near - r2, V(0.f));
       turns += w * dot(slopes.load(i), r), spreads += w * r2;
+      drawn += V(q + i) * dot(anchors.load(i), r), all2 += V(q + i) * r2;
     }
-    const float turn = reduce(turns), spread = reduce(spreads);
-    if (!(turn > 0) || !(spread > 0)) return;
+    const float turn = (std::max)(reduce(turns), 0.f), spread = reduce(spreads);
+    if (!(spread > 0)) return;
     const float a2 = (std::max)(9 * load * load / (8 * pi * reduce(pressures)), reduce_max(farthest) / 2),
-                a = std::sqrt(a2), kappa = (std::min)(3 / (4 * pi) * (a * turn / spread), 0.3f);
+                a = std::sqrt(a2), tool = (std::min)(3 / (4 * pi) * (a * turn / spread), 0.3f),
+                strain = std::clamp(-reduce(drawn) / reduce(all2), 0.f, 0.1f),
+                dense = (std::min)(4 * pi / 3 * system.b() * reduce(pressures) / load, 0.2f),
+                kappa = (1 + tool) * (1 + 3 * strain) * (1 + dense) - 1;
     per_moment_ = 3 * pi / (4 * a * a2) * kappa / (1 + kappa);
   }
   /// u less what the turn is less.
