@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 
 namespace palpate::detail {
 
@@ -37,6 +38,7 @@ class CarriedSurface {
   /// Positions are relative to `origin` [m].
   void clear(const Vec3<S>& origin) noexcept {
     origin_ = origin;
+    if (size_ == 0) return;
     size_ = 0;
     total_ = area_ = most_ = 0;
     turn_ = {};

@@ -59,7 +59,7 @@ class FrictionCones {
   DepthSlope slope;
   TwistStiffening twist;
 
-  /// Axes, and s to `lists.per_mu`, for normal loads q, at positions relative to `origin`.
+  /// Axes, and s to `lists.per_mu`, for normal loads q, at positions relative to `origin`; `passes`: w.
   template <Real S>
   void place(const PointSystem& system, const float* loads, const Vec3<S>& origin, const Vec3<float>& g,
              float passes, FrictionLists& lists) noexcept {
