@@ -42,7 +42,7 @@ namespace palpate::detail {
 ///
 ///     s = sqrt(1 + h^2) sqrt(1 + h^2/2) (1 - w (1 - 2 nu) 2 pi/3 q/A),   w = |sum t|^2/(sum |t|)^2
 ///
-/// h <= 3/4, the last factor >= 1/2; w of the last tick (reaction.hpp).
+/// h <= 3/4, the last factor >= 1/2; w of the last ticks (reaction.hpp).
 ///
 /// What is steeper is a tool's rim, round which nothing slides; 3/4 is chosen on finite elements.
 class FrictionCones {

@@ -72,7 +72,8 @@ class Reaction<true> {
     total_ = reduce(total), sticking_ = reduce(sticking);
     held_ = total_ > 0 ? 1 - reduce(rubbed) / total_ : 1;
     const float size = reduce(sizes);
-    passes_ = size > 0 ? sum_of(sum).squaredNorm() / (size * size) : 0;
+    const float same = size > 0 ? sum_of(sum).squaredNorm() / (size * size) : 0;
+    passes_ += (same - passes_) / 8;
   }
   void forget() noexcept { held_ = 1, passes_ = 0; }
 
@@ -86,7 +87,8 @@ class Reaction<true> {
   [[nodiscard]] float sticking() const noexcept { return sticking_; }
   /// How firmly friction holds the contact: mean by load of 1 - (t/limit)^2; 1 as it begins.
   [[nodiscard]] float held() const noexcept { return held_; }
-  /// How far all tractions point the same way, |sum t|^2/(sum |t|)^2: 1 where a tool slides on.
+  /// How far all tractions point the same way, |sum t|^2/(sum |t|)^2: 1 where a tool slides on. Mean of some
+  /// ticks, or the limit of a contact that is not solved yet would change by up to half from tick to tick.
   [[nodiscard]] float passes() const noexcept { return passes_; }
 
  private:

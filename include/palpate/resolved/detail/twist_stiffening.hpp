@@ -20,7 +20,7 @@ namespace palpate::detail {
 /// grows by tau^2/(2 mu) z per area, with the disc's tractions tau = 4/pi mu theta r/sqrt(a^2 - r^2). Under
 /// a ball, z = (a^2 - r^2)/(2 R), that is kappa of the disc's own:
 ///
-///     u = K P + W P - 3 pi/(4 a^3) kappa/(1 + kappa) m x (x - mean x) M,   kappa = 3/(4 pi) a/R <= 0.3
+///     u = K P + W P - 3 pi/(4 a^3) kappa/(1 + kappa) m x (x - mean x) M,   kappa = 3/(4 pi) a/R
 ///
 /// Where friction has drawn the surface together under the tool, by the strain e, and holds it there, the
 /// contact is wider by that in the undeformed body, and a disc as much wider stiffer by 3 e. And rubber that
@@ -29,7 +29,8 @@ namespace palpate::detail {
 ///
 ///     1 + kappa = (1 + 3/(4 pi) a/R) (1 + 3 e) (1 + (1 - 2 nu) p/(3 mu))
 ///
-/// each part at most 0.3, 0.3, 0.2; e: regression over r of what points hold, by load; p: mean by load.
+/// kappa <= 0.4, so that a disc of the radius a below stays softer than what is taken off; e: regression over
+/// r of what points hold, by load; p: mean by load.
 ///
 /// M: moment of the loads P about m. a: radius of the area that carries, at least 0.7 of the farthest
 /// point's distance: contacts far apart are less stiff to a turn than a disc about them all, and lose no
@@ -71,7 +72,7 @@ class TwistStiffening {
                 a = std::sqrt(a2), tool = (std::min)(3 / (4 * pi) * (a * turn / spread), 0.3f),
                 strain = std::clamp(-reduce(drawn) / reduce(all2), 0.f, 0.1f),
                 dense = (std::min)(4 * pi / 3 * system.b() * reduce(pressures) / load, 0.2f),
-                kappa = (1 + tool) * (1 + 3 * strain) * (1 + dense) - 1;
+                kappa = (std::min)((1 + tool) * (1 + 3 * strain) * (1 + dense) - 1, 0.4f);
     per_moment_ = 3 * pi / (4 * a * a2) * kappa / (1 + kappa);
   }
   /// u less what the turn is less.
