@@ -85,13 +85,13 @@ TEST_CASE("a contact that has moved and turned goes half way back, and all the w
 
 TEST_CASE("beyond a contact its turn fades, and nothing is turned by more than 60 degrees") {
   const Rings rings(3, V::Zero());
-  // R^2 = 3 (24 4e-6 + 12 16e-6)/36 = 24e-6.
+  // R^2 = 3 (24 4e-6 + 12 16e-6)/36 = 24e-6; to rounding of float, and of 0.5236 for pi/6.
   const double R = std::sqrt(24.) * 1e-3;
   const auto length = [&](double r) {
     return of(rings.turn.from_half_way(of(V(rings.middle + r * rings.m.unitOrthogonal())))).norm();
   };
-  CHECK_RELATIVE(length(0.9 * R), 2 * std::sin(0.5236 / 2) * 0.9 * R, 1e-3);
-  CHECK_RELATIVE(length(4 * R), 2 * std::sin(std::asin(0.5 / 16) / 2) * 4 * R, 1e-3);
+  CHECK_RELATIVE(length(0.9 * R), 2 * std::sin(0.5236 / 2) * 0.9 * R, 1e-5);
+  CHECK_RELATIVE(length(4 * R), 2 * std::sin(std::asin(0.5 / 16) / 2) * 4 * R, 1e-5);
   CHECK(length(R) <= rings.turn.most());
 }
 

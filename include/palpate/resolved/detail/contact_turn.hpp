@@ -40,9 +40,7 @@ class ContactTurn {
   }
   [[nodiscard]] bool is_zero() const noexcept { return sine_ == 0; }
   /// At least the length of half a turn anywhere, 1.04 times that at most [m].
-  [[nodiscard]] float most() const noexcept {
-    return is_zero() ? 0 : 1.1f * std::abs(sine_) * std::sqrt(radius2_);
-  }
+  [[nodiscard]] float most() const noexcept { return 1.1f * std::abs(sine_) * std::sqrt(radius2_); }
 
   /// b of a at x.
   template <SimdOrReal W>
@@ -62,30 +60,22 @@ class ContactTurn {
   }
 
  private:
-  template <SimdOrReal W>
-  [[nodiscard]] static PALPATE_INLINE W all(float f) noexcept {
-    return W(static_cast<ValueOf<W>>(f));
-  }
-  template <SimdOrReal W>
-  [[nodiscard]] static PALPATE_INLINE SimdVec3<W> all(const Vec3<float>& v) noexcept {
-    return {all<W>(v.x()), all<W>(v.y()), all<W>(v.z())};
-  }
   // m x (x - c)
   template <SimdOrReal W>
   [[nodiscard]] PALPATE_INLINE SimdVec3<W> about(const SimdVec3<W>& x, const Vec3<float>& c) const noexcept {
-    return cross(all<W>(axis_), x - all<W>(c));
+    return cross(each<W>(axis_), x - each<W>(c));
   }
   // sin(theta/2) at that distance.
   template <SimdOrReal W>
   [[nodiscard]] PALPATE_INLINE W sine(const SimdVec3<W>& round) const noexcept {
-    const W R2 = all<W>(radius2_);
-    return all<W>(sine_) * (R2 / (max)(R2, dot(round, round)));
+    const W R2 = W(radius2_);
+    return W(sine_) * (R2 / (max)(R2, dot(round, round)));
   }
   // What a turn by -theta/2 adds.
   template <SimdOrReal W>
   [[nodiscard]] PALPATE_INLINE SimdVec3<W> back(const SimdVec3<W>& round) const noexcept {
-    const W s = sine(round), one_less_cosine = all<W>(1) - sqrt(all<W>(1) - s * s);
-    return one_less_cosine * cross(all<W>(axis_), round) - s * round;
+    const W s = sine(round), one_less_cosine = W(1) - sqrt(W(1) - s * s);
+    return one_less_cosine * cross(each<W>(axis_), round) - s * round;
   }
 
   Vec3<float> half_way_ = Vec3<float>::Zero(), moved_ = half_way_, axis_ = half_way_, curl_ = half_way_;

@@ -29,8 +29,8 @@ namespace palpate::detail {
 ///
 ///     1 + kappa = (1 + 3/(4 pi) a/R) (1 + 3 e) (1 + (1 - 2 nu) p/(3 mu))
 ///
-/// kappa <= 0.4, so that a disc of the radius a below stays softer than what is taken off; e: regression over
-/// r of what points hold, by load; p: mean by load.
+/// by at most 0.3, 0.3 and 0.2, and kappa <= 0.4 in all: more could be taken off than few points yield, whose
+/// area has not the radius a below. e: regression over r of what points hold, by load; p: mean by load.
 ///
 /// M: moment of the loads P about m. a: radius of the area that carries, at least 0.7 of the farthest
 /// point's distance: contacts far apart are less stiff to a turn than a disc about them all, and lose no
@@ -58,19 +58,20 @@ class TwistStiffening {
       farthest = (max)(farthest, is_point(system, i) * dot(r, r));
     }
     constexpr float inner = 1.2f, pi = std::numbers::pi_v<float>;
-    const V near(inner * reduce(squares) / load);
-    V turns{}, spreads{}, drawn{}, all2{};
+    const float spread_of_all = reduce(squares);
+    const V near(inner * spread_of_all / load);
+    V turns{}, spreads{}, drawn{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const SimdVec3<V> r = system.feet().load(i) - mean;
       const V r2 = dot(r, r), w = V(q + i) * (max)(near - r2, V(0.f));
       turns += w * dot(slopes.load(i), r), spreads += w * r2;
-      drawn += V(q + i) * dot(anchors.load(i), r), all2 += V(q + i) * r2;
+      drawn += V(q + i) * dot(anchors.load(i), r);
     }
     const float turn = (std::max)(reduce(turns), 0.f), spread = reduce(spreads);
     if (!(spread > 0)) return;
     const float a2 = (std::max)(9 * load * load / (8 * pi * reduce(pressures)), reduce_max(farthest) / 2),
                 a = std::sqrt(a2), tool = (std::min)(3 / (4 * pi) * (a * turn / spread), 0.3f),
-                strain = std::clamp(-reduce(drawn) / reduce(all2), 0.f, 0.1f),
+                strain = std::clamp(-reduce(drawn) / spread_of_all, 0.f, 0.1f),
                 dense = (std::min)(4 * pi / 3 * system.b() * reduce(pressures) / load, 0.2f),
                 kappa = (std::min)((1 + tool) * (1 + 3 * strain) * (1 + dense) - 1, 0.4f);
     per_moment_ = 3 * pi / (4 * a * a2) * kappa / (1 + kappa);
