@@ -175,10 +175,11 @@ palpate::MeshData<double> mesh_of(const Body& body) {
 }
 
 palpate::ToolPoints<double> points_of(const RigidTool& tool) {
-  const bool is_round = tool.kind == RigidTool::ball || tool.kind == RigidTool::ellipsoid,
-             is_long = tool.kind == RigidTool::box || tool.kind == RigidTool::mesh;
-  const double spacing =
-      mm * (is_round ? 0.12 : 0.2) * (is_long ? bounds(tool).sizes().minCoeff() : tool.size.x());
+  double share = 0.2, size = tool.size.x();
+  if (tool.kind == RigidTool::ball || tool.kind == RigidTool::ellipsoid) share = 0.12;
+  if (tool.kind == RigidTool::box) size = bounds(tool).sizes().minCoeff();
+  if (tool.kind == RigidTool::mesh) share = 0.5, size = tool.rounding;  // it touches with its edges
+  const double spacing = mm * share * size;
   return {palpate::contact_samples(palpate::TriangleMesh<double>(mesh_of(tool)), spacing),
           {.contact_area = spacing * spacing}};
 }

@@ -17,7 +17,10 @@
 ///
 /// Constants are those of nu = 1/2; `at(nu)` gives what is used. All are dimensionless, were fitted on
 /// neo-Hookean finite elements and rounded, and serve every body. The cases are those of docs/accuracy.md.
-/// Range: d <= 2 a, nu in [0.3, 1/2]; below nu = 0.3 the constants of 0.3 are used, untested.
+/// Range: d <= 2 a, nu in [0.3, 1/2]; below nu = 0.3 the constants of 0.3 are used, untested but for the
+/// force of a sphere, nu in [0, 1/2].
+
+#include <numbers>
 
 namespace palpate {
 
@@ -67,7 +70,8 @@ struct SecondOrder {
   // A frictionless sphere (pressed_sphere.hpp).
   double sphere_dipole = 0.33;  ///< radial force dipole -nu/(1-nu) F (C_w F + sphere_dipole d_H)
   double sphere_spread = 0.15;  ///< radial within the contact, times (1 - (r/a)^2) r d_H / R; times 1 + 1.7 b
-  double sphere_softening = 0.06;  ///< of the depth, times d_H / R; times 1 - 7 b
+  double sphere_softening = 0.06;  ///< of the depth, times d_H / R; times 1 - 0.4 b
+  double sphere_drawn_in = 0;      ///< of it, less by times a / R: (3 - 2 nu) (1 - 2 nu) / (4 pi (1 - nu))
 
   /// The constants of a body with Poisson's ratio nu.
   [[nodiscard]] SecondOrder at(double nu) const noexcept {
@@ -85,7 +89,8 @@ struct SecondOrder {
     out.softening *= less;
     out.tip *= 1 - b;
     out.sphere_spread *= 1 + 1.7 * b;
-    out.sphere_softening *= 1 - 7 * b;
+    out.sphere_softening *= 1 - 0.4 * b;
+    out.sphere_drawn_in = (3 - 2 * nu) * (1 - 2 * nu) / (4 * std::numbers::pi * (1 - nu));
     return out;
   }
 };

@@ -114,12 +114,16 @@ TEST_CASE(
   };
   const auto all = of(SecondOrder{});
   CHECK(of(half) == all);
-  // b = 0.4: (2 nu)^3, seven times 1 - 2.5 b, 1 + 1.3 b, 1 - b, 1 + 1.7 b, 1 - 7 b; all others stay.
-  const std::array factor{0.216, 0., 0., 0., 0., 0., 0., 0., 1.52, 0.6, 1.68, -1.8};
+  // b = 0.4: (2 nu)^3, seven times 1 - 2.5 b, 1 + 1.3 b, 1 - b, 1 + 1.7 b, 1 - 0.4 b; all others stay.
+  const std::array factor{0.216, 0., 0., 0., 0., 0., 0., 0., 1.52, 0.6, 1.68, 0.84};
   for (std::size_t i = 0; i < all.size(); ++i) {
     CAPTURE(i);
     const double wanted = (i < factor.size() ? factor[i] : 1) * all[i];
     CHECK(std::abs(of(least)[i] - wanted) <= 1e-15);  // roundings of numbers below 3
   }
   CHECK(of(SecondOrder{}.at(0.1)) == of(least));
+  // By how much a surface is drawn in is known of every nu: 3/(4 pi), 0.24/(0.7 pi).
+  CHECK(half.sphere_drawn_in == 0);
+  CHECK_RELATIVE(least.sphere_drawn_in, 0.24 / (0.7 * std::numbers::pi), test::ulps<double>(8));
+  CHECK_RELATIVE(SecondOrder{}.at(0).sphere_drawn_in, 3 / (4 * std::numbers::pi), test::ulps<double>(8));
 }

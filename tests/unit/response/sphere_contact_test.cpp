@@ -29,8 +29,12 @@ TEST_CASE("sphere: Hertz for shallow contact, series compliance softens, stiffne
   // smaller one.
   CHECK(sphere_force(4e-3, R, modulus, 0.0, 1.0).force > own);
   CHECK(sphere_force(4e-3, R, modulus, 0.0, 0.0, 0.05).force < own);
+  // A surface that is drawn in gives the force of a depth that is larger by x a/R.
+  const auto drawn_in = sphere_force(4e-3, R, modulus, 0.0, 0.0, 0.0, 0.2);
+  const double deeper = 4e-3 * (1 + 0.2 * drawn_in.radius / R);
+  CHECK_RELATIVE(drawn_in.force, sphere_force(deeper, R, modulus, 0.0).force, test::ulps<double>(64));
   for (const double softening : {0.05, -0.1}) {
-    const auto at = [&](double depth) { return sphere_force(depth, R, modulus, 5e-6, 0.5, softening); };
+    const auto at = [&](double depth) { return sphere_force(depth, R, modulus, 5e-6, 0.5, softening, 0.2); };
     CHECK_RELATIVE(at(4e-3).stiffness, (at(4e-3 + 1e-7).force - at(4e-3 - 1e-7).force) / 2e-7, 1e-6);
     for (double depth = 1e-5; depth < 0.1; depth *= 1.1) CHECK(at(1.1 * depth).force >= at(depth).force);
   }

@@ -18,31 +18,41 @@
 
 namespace palpate::detail {
 
-/// A pressed ball's near field is softer than linear elasticity's by k d_H/R, k fitted on finite elements
-/// (response/second_order.hpp):
+/// A pressed ball's near field is softer than linear elasticity's, and stiffer by X, as the response field's
+/// sphere is (response/second_order.hpp; 3/2: its force goes with d^(3/2)):
 ///
-///     K P (1 + k e) + W P = d,   e = d_H/R = (pi/2 p_0/E')^2,   p_0 = 4/3 p,   p: mean of pressures by load
+///     K P (1 + 3/2 k e)/(1 + X) + W P = d,   e = d_H/R = (pi/2 p_0/E')^2,   p_0 = 4/3 p
+///     X = 3/(8 pi) (3 - 2 nu) (1 - 2 nu)/(1 - nu) sqrt(e)
 ///
-/// so e is known of contacts of any shape; of flat ones it is a measure of the same size. Deeper than k was
-/// fitted it is bounded: e/sqrt(1 + e^2). k is that of a ball on a flat body; on a convex one the tool's part
-/// of the curvature is less: left out.
+/// p: mean of pressures by load, so e is known of contacts of any shape. Deeper than k was fitted it is
+/// bounded: e/sqrt(1 + e^2). On a convex body the tool's part of the curvature is less: left out.
 ///
-/// Where k is positive the surface rises beside what is pressed in most, and the contact is wider than a
-/// linear one; where it is negative, narrower. What is less deep than d_0, the deepest, is deeper by r than
-/// that:
+/// X: where nu < 1/2 a pressed surface is drawn in, under Hertz's pressure by [johnson1985, 3.41b]
 ///
-///     K P (1 + c) + W P = d + r,   r = s d_0 x (2 - x),   x = min(d/d_0, 1),   c = k e + (1 + 3/2 f) s
-///     s = 3 k e min(5 f, 1) >= -0.15,   f = 1 - mean by load of K P / d_0
+///     u_r = 2/(3 pi) (1 - 2 nu)/(1 - nu) a^2/r (1 - (1 - r^2/a^2)^(3/2)) a/R
+///
+/// and there the tool, of slope r/R, is deeper by u_r r/R: 3/(4 pi) (1 - 2 nu)/(1 - nu) a/R of force more.
+/// Its pressures lean by the same slope, and by reciprocity that counts as much, less what the stress along
+/// the surface holds, 1/2 + nu of the pressure on the mean. Flat faces take the same X. With friction, which
+/// holds the surface, and where cones lean (friction_cones.hpp), 0.7 X: chosen on balls, mu = 0.1 and 1, nu
+/// from 0 to 0.4, which have 0.66 to 0.78; flat cylinders have 0.55.
+///
+/// A contact is wider than a linear one at nu = 1/2, for the surface rises beside what is pressed in most;
+/// narrower where it is drawn in. What is less deep than d_0, the deepest, is deeper by r than that:
+///
+///     K P (1 + c)/(1 + X) + W P = d + r,   r = s d_0 x (2 - x),   x = min(d/d_0, 1)
+///     c = 3/2 k e + (1 + 3/2 f) s (1 - 0.6 s),   s = 0.18 (1 - 7 (1 - 2 nu)) e min(5 f, 1) >= -0.15
+///     f = 1 - mean by load of K P / d_0
 ///
 /// Narrower only as far as friction does not hold the surface, which is then not drawn in: s < 0 is less by
 /// the share `held`.
 ///
 /// f: 1/5 under a ball, 1/3 under a cone, 0 under a flat face, which has no rim to move. c leaves the force
-/// of a ball and of a flat face as it is: to r it answers by a flat punch's pressure on the same area. 3 is
-/// chosen on a ball on an ellipsoid, whose area is 6 % too small at nu = 0.49 and 8 % too large at 0.3
-/// without r; -0.15: what the deepest of these has. x keeps r from what has only just come in. The depths are
-/// divided by 1 + c (K P)/d; e, f, the mean of (K P)/d and d_0 over the deepest of all points are of the last
-/// tick.
+/// of a ball and of a flat face as it is: to r it answers by a flat punch's pressure on the same area; 0.6 s
+/// by what e changes with it. s is chosen on a ball on an ellipsoid, whose area is 6 % too small at nu = 0.49
+/// and 8 % too large at 0.3 without r, below 0.3 as there; -0.15: what the deepest of these has. x keeps r
+/// from what has only just come in. The depths are divided by 1 + ((1 + c)/(1 + X) - 1) (K P)/d; e, f, the
+/// mean of (K P)/d and d_0 over the deepest of all points are of the last tick.
 ///
 /// Pressed, it is stiffer across, as a bonded patch (response/second_order.hpp, drag):
 ///
@@ -67,7 +77,9 @@ class FiniteStrain {
   static constexpr bool active = true;
 
   explicit FiniteStrain(double nu)
-      : k_(static_cast<float>(SecondOrder{}.at(nu).sphere_softening)),
+      : softening_(static_cast<float>(1.5 * SecondOrder{}.at(nu).sphere_softening)),
+        drawn_in_(static_cast<float>(1.5 * SecondOrder{}.at(nu).sphere_drawn_in)),
+        wider_by_(static_cast<float>(0.18 * (1 - 7 * (1 - 2 * (std::max)(nu, 0.3))))),
         across_(static_cast<float>(SecondOrder{}.at(nu).drag * (2 - nu) / 8)),
         compliance_across_(static_cast<float>(std::numbers::pi * (2 - nu) / 2)),
         root_of_strain_(
@@ -95,15 +107,17 @@ class FiniteStrain {
     const float load = reduce(loads), pressed = reduce(pressures), sunk = reduce(sunks),
                 by_rest = reduce(rests), deepest = reduce_max(nearest);
     if (!(load > 0) || !(sunk > 0)) return;
-    const float root = root_of_strain_ * pressed / load, e = root * root, ke = k_ * e / std::sqrt(1 + e * e);
+    const float root = root_of_strain_ * pressed / load, e = root * root, bounded = e / std::sqrt(1 + e * e);
     const float fall = deepest > 0 ? clamp(1 - reduce(nears) / (load * deepest), 0.f, 1.f) : 0;
-    const float wider = (std::max)(3 * ke * (std::min)(5 * fall, 1.f), -0.15f);
+    const float wider = (std::max)(wider_by_ * bounded * (std::min)(5 * fall, 1.f), -0.15f);
     wider_ = wider < 0 ? (1 - held) * wider : wider;
-    const float softer = ke + (1 + 1.5f * fall) * wider_;
+    const float softer = softening_ * bounded + (1 + 1.5f * fall) * wider_ * (1 - 0.6f * wider_);
+    const float stiffer = (system.has_friction() ? 0.7f : 1.f) * drawn_in_ * (std::min)(root, max_root);
     deepest_share_ = system.deepest() > 0 ? (std::min)(deepest / system.deepest(), 2.f) : 0;
     take_depth(system.deepest());
-    drawn_ = (1 + softer) / (1 + 7.f / 6 * wider_) - 1;
-    factor_ = 1 / (1 + softer * clamp(1 - by_rest / sunk, 0.f, 1.f));
+    const float by_strain = (1 + softer) / (1 + stiffer);
+    drawn_ = by_strain / (1 + 7.f / 6 * wider_) - 1;
+    factor_ = 1 / (1 + (by_strain - 1) * clamp(1 - by_rest / sunk, 0.f, 1.f));
     if (!system.has_friction()) return;
     SimdVec3<V> directions{}, all{}, moved{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
@@ -150,8 +164,10 @@ class FiniteStrain {
   }
 
  private:
-  float k_, across_, compliance_across_;  // the last two: kappa (1 + beta^2)/beta; c a
-  float root_of_strain_;                  // p/E' = 2 pi (1 - nu) q/A
+  static constexpr float max_root = 1.5f;  // of X: a ball pressed in by twice its radius
+  float softening_, drawn_in_, wider_by_;  // 3/2 k; X/sqrt(e); s/e
+  float across_, compliance_across_;       // kappa (1 + beta^2)/beta; c a
+  float root_of_strain_;                   // p/E' = 2 pi (1 - nu) q/A
   float drawn_ = 0, factor_ = 1;
   float wider_ = 0, deepest_share_ = 0, rise_ = 0, per_deepest_ = 0;  // s; d_0 of the deepest; s d_0; 1/d_0
   Mat3<float> common_ = Mat3<float>::Zero();                          // G

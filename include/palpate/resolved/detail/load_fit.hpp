@@ -8,6 +8,8 @@
 #include <palpate/resolved/detail/vector_list.hpp>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace palpate::detail {
 
@@ -47,8 +49,9 @@ class LoadFit {
     const Vec3<float> xx = sum_of(squares), xy = sum_of(products);
     Mat3<float> spread;
     spread << xx.x(), xy.z(), xy.y(), xy.z(), xx.y(), xy.x(), xy.y(), xy.x(), xx.z();
-    const float few = (std::min)(4 * reduce(shares2), 1.f);
-    spread += few * few * reduce(areas) / 12 * Mat3<float>::Identity();
+    alike_ = 1 / reduce(shares2), area_ = reduce(areas), spread_ = spread;
+    const float few = (std::min)(4 / alike_, 1.f);
+    spread += few * few * area_ / 12 * Mat3<float>::Identity();
     const float size = spread.trace();  // powers of small numbers would be 0
     per_spread_ = (spread / size).inverse() / size;
   }
@@ -56,6 +59,17 @@ class LoadFit {
   [[nodiscard]] float load() const noexcept { return load_; }
   [[nodiscard]] const Vec3<float>& mean() const noexcept { return mean_; }
   [[nodiscard]] const Vec3<float>& direction() const noexcept { return m_; }  ///< m
+  /// As many points as carry alike: (sum q)^2/sum q^2.
+  [[nodiscard]] float alike() const noexcept { return alike_; }
+  /// As many as under a ball whose contact is as wide as this one where it is narrow: 40 pi/9 l/A, with l the
+  /// lesser variance of r by load, a^2/5 under a ball, and A the points' mean area.
+  [[nodiscard]] float alike_across() const noexcept {
+    const Mat3<float> s = spread_ / area_;
+    const float sum = s.trace(),
+                product = (sum * sum - s.squaredNorm()) / 2;  // r lies across m: the third variance is 0
+    const float least = (sum - std::sqrt((std::max)(sum * sum - 4 * product, 0.f))) / 2;
+    return 40 * std::numbers::pi_v<float> / 9 * least;
+  }
   /// r of points i .. on.
   [[nodiscard]] PALPATE_INLINE SimdVec3<V> from_mean(std::size_t i) const noexcept {
     return across(each(m_), system_.feet().load(i) - each(mean_));
@@ -95,9 +109,9 @@ class LoadFit {
  private:
   const PointSystem& system_;
   const float* q_;
-  float load_ = 0;
+  float load_ = 0, alike_ = 0, area_ = 0;
   Vec3<float> mean_ = Vec3<float>::Zero(), m_ = Vec3<float>::Zero();
-  Mat3<float> per_spread_ = Mat3<float>::Zero();
+  Mat3<float> spread_ = Mat3<float>::Zero(), per_spread_ = Mat3<float>::Zero();
 };
 
 }  // namespace palpate::detail

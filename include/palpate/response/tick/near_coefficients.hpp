@@ -22,6 +22,7 @@ inline void set_near_terms(const SecondOrder& k, const SecondOrderContact& secon
   const NearTerms& q = second.near;
   const double dn2 = q.dn2 / a, beta = (std::min)(q.beta, 1.0), pole = near_term_pole(k.radial, a, nu);
   out.radial = static_cast<float>(out.is_sphere ? q.spread : k.radial * dn2);
+  out.raised = static_cast<float>(q.raised);
   out.radial_4 = static_cast<float>(k.radial_4.at(q.beta) * dn2 / a);
   out.radial_6 = static_cast<float>(k.radial_6.at(q.beta) * dn2 / a);
   out.normal_4 = static_cast<float>(k.normal_4.at(q.beta) * dn2);

@@ -18,7 +18,7 @@
 ///
 /// A frictionless sphere: Hertz's field and a force dipole, of which outside the contact (1 - s^-6) is drawn,
 /// over 1 + 0.9 s^-2 + 0.7 s^-4 (constants.hpp); within the contact (1 - (r/a)^2) r `radial` along the
-/// surface instead.
+/// surface instead, less (1 - (r/a)^2) `raised` along the normal.
 
 #include <palpate/core/simd_vec3.hpp>
 #include <palpate/elasticity/flat_punch.hpp>
@@ -42,6 +42,7 @@ struct NearField {
   Vec3<float> push;      ///< displacement of the patch that is taken back outside, times s^-8 [m]
   Vec3<float> slope;     ///< of the patch by the couple of second order, taken back outside, times s^-7
   float radial = 0;      ///< k_r d_n delta_n / a; of a sphere: radial displacement by r at the middle
+  float raised = 0;      ///< of a sphere: less along m at the middle [m]
   float radial_4 = 0, radial_6 = 0;         ///< r_4, r_6 times d_n delta_n / a^2
   float normal_4 = 0, normal_6 = 0;         ///< n_4, n_6 times d_n delta_n / a [m]
   Vec3<float> slide = Vec3<float>::Zero();  ///< t beta^2 delta_t / a^2 [1/m]
@@ -55,8 +56,8 @@ struct NearField {
     NearField out = *this;
     for (Vec3<float>* part : {&out.along, &out.couple, &out.slope, &out.push, &out.slide}) *part *= share;
     out.shear *= share;
-    for (float* part : {&out.normal, &out.torsion, &out.dipole, &out.radial, &out.radial_4, &out.radial_6,
-                        &out.normal_4, &out.normal_6})
+    for (float* part : {&out.normal, &out.torsion, &out.dipole, &out.radial, &out.raised, &out.radial_4,
+                        &out.radial_6, &out.normal_4, &out.normal_6})
       *part *= share;
     return out;
   }
@@ -103,9 +104,10 @@ struct NearField {
       const auto d = seen.disc.force_dipole(nu), t = seen.disc.flat_punch(0, dot(p, along), nu);
       const V near4 = seen.near2 * seen.near2,
               share = (1.f - near4 * seen.near2) /
-                      (1.f + tick::hertz_dipole_2 * seen.near2 + tick::hertz_dipole_4 * near4);
-      u.in_plane += t.in_plane + dipole * share * d.in_plane + radial * (max)(1.f - seen.r2 / (a * a), V{});
-      u.normal += t.normal + dipole * share * d.normal;
+                      (1.f + tick::hertz_dipole_2 * seen.near2 + tick::hertz_dipole_4 * near4),
+              within = (max)(1.f - seen.r2 / (a * a), V{});
+      u.in_plane += t.in_plane + dipole * share * d.in_plane + radial * within;
+      u.normal += t.normal + dipole * share * d.normal - raised * within;
       u.along = t.along;
     }
     return {u.in_plane * p.x + u.normal * m.x() + u.along * along.x(),

@@ -11,8 +11,9 @@
 /// | displacement | d less dG/dF, G = F (R_s h^2 + K x_c^2) / 2 + F s.x_c + F s.w_t / 2 |
 /// | radial force dipole | D = -nu/(1-nu) F (C_w F + k d_H): a patch's, less what an outward pressure takes |
 /// | a body that stiffens | D e, by the part of D with d_H: 8/3 D e / F (powers 5/3 and 1 of F) |
-/// | finite strain | `sphere_softening` (sphere_contact.hpp) |
+/// | finite strain | `sphere_softening`, `sphere_drawn_in` (sphere_contact.hpp) |
 /// | within the contact | the surface slides outwards, `sphere_spread` (near_field.hpp) |
+/// | | it is less deep than its force has it, by x a/R of d_H at the middle (near_field.hpp) |
 ///
 /// | symbol | name | unit |
 /// |---|---|---|
@@ -38,13 +39,15 @@ struct SphereShape {
   double R;          ///< radius of the relative curvature [m]
   double less;       ///< g of sphere_contact.hpp
   double softening;  ///< by finite strain
+  double drawn_in;   ///< x of sphere_contact.hpp
 
   SphereShape(const Indenter& tool, double sum_of_curvatures, const SecondOrder* k) noexcept
       : depth(tool.d.dot(tool.m)),
         curvature(0.5 * sum_of_curvatures),
         R(1 / (std::max)(1 / tool.sphere + curvature, tick::min_relative_curvature / tool.sphere)),
         less(1 - std::clamp(cube(R / tool.sphere) + cube(R * curvature), 0.0, 1.0)),
-        softening(k != nullptr ? k->sphere_softening * R / tool.sphere : 0) {}
+        softening(k != nullptr ? k->sphere_softening * R / tool.sphere : 0),
+        drawn_in(k != nullptr ? k->sphere_drawn_in : 0) {}
 
  private:
   [[nodiscard]] static double cube(double x) noexcept { return x * x * x; }
@@ -115,7 +118,7 @@ struct SphereAcross {
     construct(placed, [&] { return place_contact(field, tool); });
     const double own = tool.m.dot(placed.w * tool.m);
     out.felt = sphere_force(shape.depth - lift, shape.R, modulus, (own - stiffening) / mu, shape.less,
-                            shape.softening);
+                            shape.softening, shape.drawn_in);
     const double P = out.felt.force / mu;
     out.P = P * tool.m;
     if (k == nullptr) continue;
@@ -146,6 +149,7 @@ struct SphereAcross {
   out.share = series_share(sphere.radial.norm() * std::abs(dipole), tool.displacement2());
   out.dipole = out.share * dipole;
   out.near.spread = out.share * k->sphere_spread * local / shape.R;
+  out.near.raised = shape.drawn_in * sphere.a / shape.R * local;
   return out;
 }
 

@@ -127,7 +127,7 @@ second_order_loads(const ResponseField& field, const SecondOrder* constants, con
   near.delta_t *= share;
   near.couple = couple * share;
   near.push = push * share;
-  near.spread = 0;
+  near.spread = near.raised = 0;
   out.dipole = first.dipole + share * dipole;
   out.couple = first.couple + near.couple;
   out.rhs = first.rhs + share * (second - rotation);

@@ -3,8 +3,8 @@
 
 /// @file A rigid frictionless sphere pressed into the body: the contact area grows with depth. Per tick.
 ///
-/// The half-space's compliance in series with that of the regular part, d = (1 + k d_H/R) d_H + C_w F, l =
-/// ln((R+a)/(R-a)):
+/// The half-space's compliance in series with that of the regular part, l = ln((R+a)/(R-a)):
+///     d = d_H (1 + k d_H/R)/(1 + x a/R) + C_w F
 ///     d_H = (a/2) l - g a^4/(3 R^3),   F = E* ((a^2 + R^2) l/2 - a R - 8/15 g a^5/R^3),   E* = E/(1-nu^2)
 /// | symbol | name | unit | range |
 /// |---|---|---|---|
@@ -14,6 +14,7 @@
 /// | C_w | normal compliance of the regular part; < 0 where a layer lies on something stiff | m/N |  |
 /// | g | of the gap's r^4, the part that a sphere of radius R on a plane has too much | - | [0, 1] |
 /// | k | softening by finite strain | - | > -0.25 |
+/// | x | stiffening where the surface is drawn in, nu < 1/2 | - | >= 0 |
 /// k1, k2: the surface's principal curvatures. Limits: no friction; pressed along the normal; the depth is
 /// bounded where a = 0.95 R; what a body takes from d_H is at most half of it. Sources: [sneddon1965],
 /// [johnson1985] ch. 4.
@@ -48,10 +49,10 @@ struct PressedSphere : SphereForce<double> {
 };
 
 /// Solves d(a) for a by Newton steps inside a bracket; d grows with a, so the root is single. `compliance`:
-/// C_w; `less`: g.
+/// C_w; `less`: g; `softening`: k; `drawn_in`: x.
 template <Real S>
 [[nodiscard]] inline SphereForce<S> sphere_force(S depth, S R, S modulus, S compliance, S less = S(0),
-                                                 S softening = S(0)) noexcept {
+                                                 S softening = S(0), S drawn_in = S(0)) noexcept {
   if (!is_finite(depth) || !(depth > S(0)) || !is_finite(R) || !(R > S(0))) return {};
   struct Value {
     S load, by_load, depth, by_depth;  // F / R^2, d / R, and their derivatives by s = a / R
@@ -68,8 +69,9 @@ template <Real S>
                         : S(0.5) * ((s2 + S(1)) * l - S(2) * s);
     v.load = modulus * (v.load - S(8) / S(15) * less * s2 * s3);
     v.by_load = modulus * (s * l + (s2 + S(1)) * q - S(1) - S(8) / S(3) * less * s2 * s2);
-    v.depth = own * (S(1) + softening * own);
-    v.by_depth = by_own * (S(1) + S(2) * softening * own);
+    const S stiffer = S(1) + drawn_in * s;
+    v.depth = own * (S(1) + softening * own) / stiffer;
+    v.by_depth = (by_own * (S(1) + S(2) * softening * own) - drawn_in * v.depth) / stiffer;
     const bool bounded = series * v.load < min_share * v.depth;
     v.depth += bounded ? min_share * v.depth : series * v.load;
     v.by_depth += bounded ? min_share * v.by_depth : series * v.by_load;
@@ -79,10 +81,11 @@ template <Real S>
   S low = 0, high = S(detail::tick::max_contact_radius), s = (std::min)(std::sqrt(target), S(0.9));
   for (int i = 0; i < 40; ++i) {
     const Value v = at(s);
+    const S step = (v.depth - target) / v.by_depth;
+    if (std::abs(step) <= S(4) * std::numeric_limits<S>::epsilon() * s) break;
     (v.depth > target ? high : low) = s;
-    const S next = s - (v.depth - target) / v.by_depth, old = s;
+    const S next = s - step;
     s = next > low && next < high ? next : S(0.5) * (low + high);
-    if (std::abs(s - old) <= S(4) * std::numeric_limits<S>::epsilon() * s) break;
   }
   const Value v = at(s);
   return {R * R * v.load, R * v.by_load / v.by_depth, R * s};

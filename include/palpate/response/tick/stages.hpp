@@ -101,10 +101,11 @@ struct NearTerms {
   Vec3<double> couple;   ///< bending couple of second order [m^3]
   Vec3<double> push;     ///< displacement of the patch by the universal forces [m]
   double spread;         ///< of a sphere: radial displacement by r at the middle
+  double raised;         ///< of a sphere: what its own field is too deep by at the middle [m]
 
   [[nodiscard]] static NearTerms none() noexcept {
     const Vec3<double> zero = Vec3<double>::Zero();
-    return {0, 0, zero, zero, zero, 0};
+    return {0, 0, zero, zero, zero, 0, 0};
   }
 };
 
