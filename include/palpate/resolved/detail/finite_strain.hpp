@@ -19,13 +19,16 @@
 namespace palpate::detail {
 
 /// A pressed ball's near field is softer than linear elasticity's, and stiffer by X, as the response field's
-/// sphere is (response/second_order.hpp; 3/2: its force goes with d^(3/2)):
+/// sphere is (response/second_order.hpp, k):
 ///
-///     K P (1 + 3/2 k e)/(1 + X) + W P = d,   e = d_H/R = (pi/2 p_0/E')^2,   p_0 = 4/3 p
+///     K P (1 + n k e)/(1 + X) + W P = d,   e = d_H/R = (pi/2 p_0/E')^2,   p_0 = 4/3 p
 ///     X = 3/(8 pi) (3 - 2 nu) (1 - 2 nu)/(1 - nu) sqrt(e)
+///     n = (1 + f)/(1 - f),   f = 1 - mean by load of K P / d_0
 ///
-/// p: mean of pressures by load, so e is known of contacts of any shape. Deeper than k was fitted it is
-/// bounded: e/sqrt(1 + e^2). On a convex body the tool's part of the curvature is less: left out.
+/// p: mean of pressures by load, so e is known of contacts of any shape. d_0: how deep the deepest point is.
+/// n: the force goes with d^n, and k is of the depth; 3/2 under a ball, f = 1/5, 2 under a cone, 1 under a
+/// flat face. Deeper than k was fitted e is bounded: e/sqrt(1 + e^2). On a convex body the tool's part of the
+/// curvature is less: left out.
 ///
 /// X: where nu < 1/2 a pressed surface is drawn in, under Hertz's pressure by [johnson1985, 3.41b]
 ///
@@ -38,21 +41,20 @@ namespace palpate::detail {
 /// from 0 to 0.4, which have 0.66 to 0.78; flat cylinders have 0.55.
 ///
 /// A contact is wider than a linear one at nu = 1/2, for the surface rises beside what is pressed in most;
-/// narrower where it is drawn in. What is less deep than d_0, the deepest, is deeper by r than that:
+/// narrower where it is drawn in. What is less deep than d_0 is deeper by r than that:
 ///
 ///     K P (1 + c)/(1 + X) + W P = d + r,   r = s d_0 x (2 - x),   x = min(d/d_0, 1)
-///     c = 3/2 k e + (1 + 3/2 f) s (1 - 0.6 s),   s = 0.18 (1 - 7 (1 - 2 nu)) e min(5 f, 1) >= -0.15
-///     f = 1 - mean by load of K P / d_0
+///     c = n k e + (1 + 3/2 f) s (1 - 0.6 s),   s = 0.18 (1 - 7 (1 - 2 nu)) e min(5 f, 1) >= -0.15
 ///
 /// Narrower only as far as friction does not hold the surface, which is then not drawn in: s < 0 is less by
 /// the share `held`.
 ///
-/// f: 1/5 under a ball, 1/3 under a cone, 0 under a flat face, which has no rim to move. c leaves the force
-/// of a ball and of a flat face as it is: to r it answers by a flat punch's pressure on the same area; 0.6 s
-/// by what e changes with it. s is chosen on a ball on an ellipsoid, whose area is 6 % too small at nu = 0.49
-/// and 8 % too large at 0.3 without r, below 0.3 as there; -0.15: what the deepest of these has. x keeps r
-/// from what has only just come in. The depths are divided by 1 + ((1 + c)/(1 + X) - 1) (K P)/d; e, f, the
-/// mean of (K P)/d and d_0 over the deepest of all points are of the last tick.
+/// A flat face, f = 0, has no rim to move. c leaves the force of a ball and of a flat face as it is: to r it
+/// answers by a flat punch's pressure on the same area; 0.6 s by what e changes with it. s is chosen on a
+/// ball on an ellipsoid, whose area is 6 % too small at nu = 0.49 and 8 % too large at 0.3 without r, below
+/// 0.3 as there; -0.15: what the deepest of these has. x keeps r from what has only just come in. The depths
+/// are divided by 1 + ((1 + c)/(1 + X) - 1) (K P)/d; e, f, the mean of (K P)/d and d_0 over the deepest of
+/// all points are of the last tick.
 ///
 /// Pressed, it is stiffer across, as a bonded patch (response/second_order.hpp, drag):
 ///
@@ -77,7 +79,7 @@ class FiniteStrain {
   static constexpr bool active = true;
 
   explicit FiniteStrain(double nu)
-      : softening_(static_cast<float>(1.5 * SecondOrder{}.at(nu).sphere_softening)),
+      : softening_(static_cast<float>(SecondOrder{}.at(nu).sphere_softening)),
         drawn_in_(static_cast<float>(1.5 * SecondOrder{}.at(nu).sphere_drawn_in)),
         wider_by_(static_cast<float>(0.18 * (1 - 7 * (1 - 2 * (std::max)(nu, 0.3))))),
         across_(static_cast<float>(SecondOrder{}.at(nu).drag * (2 - nu) / 8)),
@@ -111,7 +113,8 @@ class FiniteStrain {
     const float fall = deepest > 0 ? clamp(1 - reduce(nears) / (load * deepest), 0.f, 1.f) : 0;
     const float wider = (std::max)(wider_by_ * bounded * (std::min)(5 * fall, 1.f), -0.15f);
     wider_ = wider < 0 ? (1 - held) * wider : wider;
-    const float softer = softening_ * bounded + (1 + 1.5f * fall) * wider_ * (1 - 0.6f * wider_);
+    const float power = (1 + fall) / (1 - (std::min)(fall, 0.5f)),
+                softer = power * softening_ * bounded + (1 + 1.5f * fall) * wider_ * (1 - 0.6f * wider_);
     const float stiffer = (system.has_friction() ? 0.7f : 1.f) * drawn_in_ * (std::min)(root, max_root);
     deepest_share_ = system.deepest() > 0 ? (std::min)(deepest / system.deepest(), 2.f) : 0;
     take_depth(system.deepest());
@@ -165,7 +168,7 @@ class FiniteStrain {
 
  private:
   static constexpr float max_root = 1.5f;  // of X: a ball pressed in by twice its radius
-  float softening_, drawn_in_, wider_by_;  // 3/2 k; X/sqrt(e); s/e
+  float softening_, drawn_in_, wider_by_;  // k; X/sqrt(e); s/e
   float across_, compliance_across_;       // kappa (1 + beta^2)/beta; c a
   float root_of_strain_;                   // p/E' = 2 pi (1 - nu) q/A
   float drawn_ = 0, factor_ = 1;
