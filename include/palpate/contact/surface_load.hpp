@@ -19,6 +19,7 @@ struct SurfaceLoad {
   Vec3<S> shift = Vec3<S>::Zero();        ///< finite strain: seen from afar it acts at position + shift [m]
   Vec3<S> tool_point = Vec3<S>::Zero();   ///< which of the tool presses there [m]
   Vec3<S> tool_normal = Vec3<S>::Zero();  ///< outward there, unit; 0: the shape may overlap with the tool
+  S raised = S(0);                        ///< finite strain: its cell sinks by so much less [m]
 };
 
 /// Whether a body of Young's modulus E [Pa] can have it: position and direction as a pose's, an area of 1e-18
@@ -29,7 +30,7 @@ template <Real S>
          is_within(load.direction.squaredNorm() - S(1), S(1e-3)) && is_within(load.area, S(1e12)) &&
          load.area >= S(1e-18) && is_within(load.force, S(1e4) * E * load.area) &&
          is_within(load.by_strain, S(1e4) * E * load.area) && is_within(load.tool_point, S(1e6)) &&
-         is_within(load.tool_normal, S(2)) && is_within(load.shift, S(1e6));
+         is_within(load.tool_normal, S(2)) && is_within(load.shift, S(1e6)) && is_within(load.raised, S(1e6));
 }
 
 }  // namespace palpate

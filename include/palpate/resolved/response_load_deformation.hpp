@@ -78,7 +78,7 @@ class ResponseLoadDeformation {
   [[nodiscard]] static bool same(const SurfaceLoad<S>& a, const SurfaceLoad<S>& b) noexcept {
     return a.position == b.position && a.direction == b.direction && a.force == b.force && a.area == b.area &&
            a.by_strain == b.by_strain && a.shift == b.shift && a.tool_point == b.tool_point &&
-           a.tool_normal == b.tool_normal;
+           a.tool_normal == b.tool_normal && a.raised == b.raised;
   }
 
   std::shared_ptr<const ResponseField> field_;

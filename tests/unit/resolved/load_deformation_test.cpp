@@ -4,6 +4,7 @@
 #include <palpate/geometry/ellipsoid.hpp>
 #include <palpate/geometry/sphere.hpp>
 #include <palpate/law/friction/coulomb.hpp>
+#include <palpate/law/friction/none.hpp>
 #include <palpate/resolved/contact_samples.hpp>
 #include <palpate/resolved/response_compliance.hpp>
 #include <palpate/resolved/response_load_deformation.hpp>
@@ -15,6 +16,8 @@
 #include <support/check.hpp>
 #include <support/no_heap.hpp>
 #include <support/response_fields.hpp>
+
+#include <array>
 
 using namespace palpate;
 using namespace palpate::test;
@@ -81,6 +84,50 @@ TEST_CASE("the surface lies on a ball that is pressed into it, within 2 % of the
   CHECK(draw(solver, drawing).vertices == mesh.vertices.size());
   const V centre = pressed(depth).translation;
   for (const V& x : drawing.at) CHECK(std::abs((x - centre).norm() - R) <= 0.02 * depth);
+}
+
+TEST_CASE("nu = 0: the surface lies on a ball, and sinks beside it as finite elements have it") {
+  // A ball of 15 mm pressed 4 mm into a block (bench/truth/data/contact, ball_nu0). Measured: 0.3 % of the
+  // depth on the ball, 1.8 % beside it; 26 % on the ball where nothing is raised.
+  struct Vertex {
+    double r, sunk, in;  // from the axis, down and inwards [mm]
+  };
+  const std::array<Vertex, 9> wanted{{{0, 3.9833, 0},
+                                      {2.676, 3.7901, 0.2711},
+                                      {4.579, 3.4143, 0.4771},
+                                      {9.694, 1.5926, 0.7839},
+                                      {12.133, 1.1552, 0.6466},
+                                      {15.217, 0.8424, 0.5202},
+                                      {19.446, 0.5927, 0.4082},
+                                      {25.299, 0.3958, 0.3175},
+                                      {32.771, 0.2518, 0.2564}}};
+  MeshData<double> mesh;
+  for (const Vertex& v : wanted) mesh.vertices.emplace_back(0, 0.06, 1e-3 * v.r);
+  const V size(0.09, 0.06, 0.09);
+  const auto block = std::make_shared<const ResponseField>(block_field(size, 1e6, 0, 400));
+  ContactSolver<Box<double>, Elastic, Frictionless<double>, ContactPoints<256>, Shape> solver(
+      {.object = Box<double>({.half = size / 2, .centre = V(0, size.y() / 2, 0)}),
+       .tool = ToolPoints<double>(
+           contact_samples(TriangleMesh<double>(Sphere<double>({.radius = R}).mesh(2000)), 0.0018),
+           {.contact_area = 1e-4}),
+       .force = Elastic({.compliance = ResponseCompliance(block)}),
+       .deformation = Shape(block, mesh, false)});
+  Pose<double> X;
+  for (int i = 1; i <= 100; ++i) {
+    X.translation = V(0, size.y() + R - 4e-5 * i, 0);
+    (void)solver.tick(X);
+  }
+  Drawing drawing(mesh);
+  (void)draw(solver, drawing);
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    const V off = 1e3 * (drawing.at[i] - mesh.vertices[i]) + V(0, wanted[i].sunk, wanted[i].in);
+    CAPTURE(wanted[i].r);
+    CAPTURE(off.transpose());
+    if (wanted[i].r < 5)  // it moves inwards by more than finite elements have it, on the ball
+      CHECK(std::abs((drawing.at[i] - X.translation).norm() - R) <= 0.02 * 0.004);
+    else
+      CHECK(off.norm() <= 0.02 * 4);
+  }
 }
 
 TEST_CASE("nothing of the surface is inside a block's face by more than 2 % of the depth") {

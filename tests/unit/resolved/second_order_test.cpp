@@ -286,9 +286,9 @@ TEST_CASE("finite strain: Hertz's pressure has the strain d/R, and nu turns soft
                  softer = SecondOrder{}.at(nu).sphere_softening * bounded,
                  stiffer = 0.7 * 1.5 * SecondOrder{}.at(nu).sphere_drawn_in * std::sqrt(e);
     const float softening = strain.beside(Vec3<float>::UnitY(), 1).y();
-    CHECK_RELATIVE(1 + softening, (1 + softer) / (1 + stiffer), 1e-4);  // 1,257 cells
+    CHECK_RELATIVE(softening, softer, 0.02);  // 1,257 cells
     const float deep = 0.002f;
-    CHECK_RELATIVE(strain.depth(deep), deep / (1 + 0.75 * softening), 1e-6);
+    CHECK_RELATIVE(strain.depth(deep), deep / (1 + 0.75 * ((1 + softer) / (1 + stiffer) - 1)), 1e-4);
     CHECK((nu < 0.4) == (strain.depth(deep) > deep));
     // All has sunk alike, as under a flat face. Where a ball's points have, 4 mm at most, what is less deep is
     // the deeper, and all is as much softer as leaves the force.
@@ -300,9 +300,8 @@ TEST_CASE("finite strain: Hertz's pressure has the strain d/R, and nu turns soft
     }
     round.measure(system, loads, q.data(), r_of_ball.data(), none, detail::NoLoadsBeside(0, 0, 0), 0);
     const double d_0 = 0.004, s = 0.18 * (1 - 7 * (1 - 2 * nu)) * bounded;
-    const auto by_strain = [&](double wider) {
-      return (1 + 1.5 * softer + 1.3 * wider * (1 - 0.6 * wider)) / (1 + stiffer);
-    };
+    const auto drawn = [&](double wider) { return 1 + 1.5 * softer + 1.3 * wider * (1 - 0.6 * wider); };
+    const auto by_strain = [&](double wider) { return drawn(wider) / (1 + stiffer); };
     const double c = by_strain(s) - 1;
     for (const double x : {0., 0.1, 0.5, 1., 2.}) {
       const double y = (std::min)(x, 1.), d = x * d_0;
@@ -317,7 +316,28 @@ TEST_CASE("finite strain: Hertz's pressure has the strain d/R, and nu turns soft
     CHECK(std::abs(held.depth(static_cast<float>(d)) - (d + s_held * d_0 * 0.75) / by_strain(s_held)) <=
           0.05 * std::abs(c) * d_0);
     // Measured 6e-4: f is 0.195 of 1,257 cells.
-    CHECK_RELATIVE(1 + round.beside(Vec3<float>::UnitY(), 1).y(), by_strain(s) / (1 + 7. / 6 * s), 1e-3);
+    CHECK_RELATIVE(1 + round.beside(Vec3<float>::UnitY(), 1).y(), drawn(s) / (1 + 7. / 6 * s), 1e-3);
+    // Drawn with that the surface would be deeper than the ball lets it sink: in the middle by X of the depth,
+    // not where the pressure falls to nothing.
+    struct Pressure {
+      const std::vector<float>&q, &r;
+    };
+    struct Regular {
+      const detail::VectorList& w;
+      const detail::VectorList& response() const { return w; }
+    };
+    const auto raised = [&](std::size_t i) {
+      return round.raised(i, system, Pressure{q, r_of_ball}, Regular{none});
+    };
+    std::size_t middle = 0, rim = 0;
+    for (std::size_t i = 0; i < system.size(); ++i) {
+      if (q[i] > q[middle]) middle = i;
+      if (q[i] < q[rim]) rim = i;
+    }
+    const double near = r_of_ball[middle] + system.depth[middle];
+    CHECK_RELATIVE(raised(middle), by_strain(s) / (1 + 7. / 6 * s) * stiffer * near, 5e-3);  // 1,257 cells
+    CHECK(raised(rim) < 3 * q[rim] / q[middle] * raised(middle));  // 2, and 4/3 of p_0 for 1,257 cells
+    CHECK((nu < 0.4) == (raised(middle) > 5e-5f));
     // Across: a bonded patch's drag, over its force 8 mu a delta_t/(2 - nu), at the depth of a punch of the
     // same mean pressure, 2 a/(3 R) of its radius.
     const double beta = 2 * double(a) / (3 * ball),

@@ -423,6 +423,11 @@ TEST_CASE("loads beside: none, too many, absurd, and after an invalid pose") {
     bad.by_strain.x() = newtons;
     is_left_out(bad);
   }
+  for (const double metres : {no_number, 1e300}) {
+    SurfaceLoad<double> bad = good;
+    bad.raised = metres;
+    is_left_out(bad);
+  }
   for (const double number : {no_number, 1e300})
     for (auto vector :
          {&SurfaceLoad<double>::shift, &SurfaceLoad<double>::tool_point, &SurfaceLoad<double>::tool_normal}) {

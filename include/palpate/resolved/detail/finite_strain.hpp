@@ -88,7 +88,7 @@ class FiniteStrain {
             static_cast<float>(std::numbers::pi / 2 * (4. / 3) * 2 * std::numbers::pi * (1 - nu))) {}
 
   void forget() noexcept {
-    drawn_ = wider_ = deepest_share_ = rise_ = per_deepest_ = 0, factor_ = 1;
+    drawn_ = raised_ = wider_ = deepest_share_ = rise_ = per_deepest_ = 0, factor_ = 1;
     common_.setZero(), stiffened_.setZero(), shift_.setZero();
   }
   /// After a solve for the loads P, q along the directions of pressing: r, displacements along these less the
@@ -119,7 +119,8 @@ class FiniteStrain {
     deepest_share_ = system.deepest() > 0 ? (std::min)(deepest / system.deepest(), 2.f) : 0;
     take_depth(system.deepest());
     const float by_strain = (1 + softer) / (1 + stiffer);
-    drawn_ = by_strain / (1 + 7.f / 6 * wider_) - 1;
+    drawn_ = (1 + softer) / (1 + 7.f / 6 * wider_) - 1;
+    raised_ = stiffer / (1 + stiffer) * (1 + drawn_), per_pressure_ = 1.5f * load / pressed;
     factor_ = 1 / (1 + (by_strain - 1) * clamp(1 - by_rest / sunk, 0.f, 1.f));
     if (!system.has_friction()) return;
     SimdVec3<V> directions{}, all{}, moved{};
@@ -160,10 +161,19 @@ class FiniteStrain {
     return factor_ * (d + rise_ * x * (2 - x));
   }
   /// What the near field of a load is drawn with beside it, q along m: so much more that the surface lies
-  /// within s/6 of d_0 of where a ball's points hold it, k e under a flat face; and of all loads across m
-  /// kappa/(1 + kappa) less, shared as q is [m^2].
+  /// within s/6 of d_0 of where a ball's points hold it, k e under a flat face, but for raised(); and of all
+  /// loads across m kappa/(1 + kappa) less, shared as q is [m^2].
   [[nodiscard]] Vec3<float> beside(const Vec3<float>& m, float q) const noexcept {
     return q * (drawn_ * m - stiffened_);
+  }
+  /// By how much the drawn near field is deeper than the tool lets the surface sink at point i [m]: X of what
+  /// it sinks, where the pressure is p_0/2 and more, fading with it towards the rim. `pressure` has q
+  /// and r as above, `regular` w.
+  [[nodiscard]] float raised(std::size_t i, const PointSystem& system, const auto& pressure,
+                             const auto& regular) const noexcept {
+    const float by_rest = system.direction(i).dot(regular.response()[i]),
+                near = pressure.r[i] + system.depth[i] - (std::max)(by_rest, 0.f);
+    return raised_ * (std::max)(near, 0.f) * (std::min)(per_pressure_ * pressure.q[i] / system.area(i), 1.f);
   }
 
  private:
@@ -171,7 +181,7 @@ class FiniteStrain {
   float softening_, drawn_in_, wider_by_;  // k; X/sqrt(e); s/e
   float across_, compliance_across_;       // kappa (1 + beta^2)/beta; c a
   float root_of_strain_;                   // p/E' = 2 pi (1 - nu) q/A
-  float drawn_ = 0, factor_ = 1;
+  float drawn_ = 0, raised_ = 0, per_pressure_ = 0, factor_ = 1;      // per_pressure_: 2/p_0, of q/A
   float wider_ = 0, deepest_share_ = 0, rise_ = 0, per_deepest_ = 0;  // s; d_0 of the deepest; s d_0; 1/d_0
   Mat3<float> common_ = Mat3<float>::Zero();                          // G
   Vec3<float> stiffened_ = Vec3<float>::Zero();  // what the near field lacks, per normal load
@@ -185,6 +195,7 @@ struct LinearStrain {
   [[nodiscard]] static Mat3<float> common() noexcept { return Mat3<float>::Zero(); }
   [[nodiscard]] static Vec3<float> beside(const Vec3<float>&, float) noexcept { return Vec3<float>::Zero(); }
   [[nodiscard]] static Vec3<float> shift() noexcept { return Vec3<float>::Zero(); }
+  [[nodiscard]] static float raised(const auto&...) noexcept { return 0; }
   static void take_depth(float) noexcept {}
   [[nodiscard]] static float depth(float d) noexcept { return d; }
 };

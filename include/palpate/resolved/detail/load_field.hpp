@@ -13,7 +13,11 @@
 ///
 /// At the points this is the solve's own cell; value and slope are 1/r's at r^2 = A; the last coefficient
 /// makes the sum over a lattice of equal loads even: within 0.16/sqrt(A) all over squares and hexagons, half
-/// a percent of the depth with 65 points. At a rim, whose loads are uneven, 15 %: what is then inside the
+/// a percent of the depth with 65 points. A load's `raised`, b, is taken back within its cell:
+///
+///     u -= b (1 - s)^2 m,   s < 1     (over a square lattice of equal b they sum up to b to 1.12 b)
+///
+/// At a rim, whose loads are uneven, 15 %: what is then inside the
 /// tool, as its points y_i and normals n_i tell, is moved out along the mean direction of pressing, M:
 ///
 ///     u += s t M,   t = min (n_i.(y_i - y) + e_i)/(n_i.M),   t >= 0,   n_i.M >= 0.3,   y = x + u
@@ -43,6 +47,7 @@ struct NearLoad {
   Vec3<float> P;     ///< [m^2]
   float area;        ///< [m^2]
   Vec3<float> y, n;  ///< the tool's point, its outward normal
+  float raised;      ///< [m]
 
   /// Displacement [m] at `at`; b = 1 - 2 nu.
   template <class V>
@@ -60,6 +65,10 @@ struct NearLoad {
     u.x += inverse * (P.x() + half * t.x() + along * r.x);
     u.y += inverse * (P.y() + half * t.y() + along * r.y);
     u.z += inverse * (P.z() + half * t.z() + along * r.z);
+    if (raised > 0) {
+      const V within = (max)(1.f - s, V(0.f)), back = raised * within * within;
+      u.x -= back * m.x(), u.y -= back * m.y(), u.z -= back * m.z();
+    }
     if (!(b > 0)) return;
     const V z = of(m, r), s1 = 1.f / (max)(1.f + z * i1, V(0.1f)),
             tp = of(t, r);  // as point_load() bounds it
@@ -220,7 +229,8 @@ class LoadField {
           (felt * per_load * (load.force + load.by_strain).template cast<double>()).template cast<float>(),
           static_cast<float>(load.area),
           load.tool_point.template cast<float>(),
-          load.tool_normal.template cast<float>()};
+          load.tool_normal.template cast<float>(),
+          static_cast<float>(load.raised)};
     }
     drawn_.near = {(0.5 * (low + high)).cast<float>(),
                    static_cast<float>(0.5 * (high - low).norm()),

@@ -76,7 +76,8 @@ class ResolvedState {
       const Vec3<float> m = system_.direction(i);
       out.push_back({origin_ + in_S(carried_.at_rest(system_.foot(i))), in_S(m), per_load_ * in_S(p.load),
                      static_cast<S>(system_.area(i)), per_load_ * in_S(strain_.beside(m, m.dot(p.load))),
-                     in_S(strain_.shift()), contacts_[k++].position, in_S(touching_[inside_[i]].outward)});
+                     in_S(strain_.shift()), contacts_[k++].position, in_S(touching_[inside_[i]].outward),
+                     static_cast<S>(strain_.raised(i, system_, pressure_, regular_))});
     }
   }
   /// Loads of other tools on the same body, for the next solve().
@@ -104,8 +105,7 @@ class ResolvedState {
                   const Pose<S>& X) noexcept {
     per_load_ = static_cast<S>(4 * std::numbers::pi * force.shear_modulus());
     beside_.begin_tick(object, force.compliance(), tool, pose_, X, has_contact(), per_load_, regular_);
-    ++tick_;
-    touching_.clear(), system_.begin_tick(), has_room_ = true;
+    ++tick_, touching_.clear(), system_.begin_tick(), has_room_ = true;
   }
   /// Where the tool at X is over the undeformed surface, which others' loads move.
   [[nodiscard]] Pose<S> over(const Pose<S>& X) const noexcept { return beside_.over(X); }
