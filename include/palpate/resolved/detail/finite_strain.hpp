@@ -23,10 +23,10 @@ namespace palpate::detail {
 ///
 ///     K P (1 + n k e)/(1 + X) + W P = d,   e = d_H/R = (pi/2 p_0/E')^2,   p_0 = 4/3 p
 ///     X = 3/(8 pi) (3 - 2 nu) (1 - 2 nu)/(1 - nu) sqrt(e)
-///     n = 1 + 5/2 f,   f = 1 - mean by load of K P / d_0 <= 1/2
+///     n = (1 + f)/(1 - f),   f = 1 - mean by load of K P / d_0
 ///
 /// p: mean of pressures by load, so e is known of contacts of any shape. d_0: how deep the deepest point is.
-/// n: the force goes with d^n, and k is of the depth; 3/2 under a ball, f = 1/5, 11/6 under a cone, 1 under a
+/// n: the force goes with d^n, and k is of the depth; 3/2 under a ball, f = 1/5, 2 under a cone, 1 under a
 /// flat face. Deeper than k was fitted e is bounded: e/sqrt(1 + e^2). On a convex body the tool's part of the
 /// curvature is less: left out.
 ///
@@ -113,7 +113,7 @@ class FiniteStrain {
     const float fall = deepest > 0 ? clamp(1 - reduce(nears) / (load * deepest), 0.f, 1.f) : 0;
     const float wider = (std::max)(wider_by_ * bounded * (std::min)(5 * fall, 1.f), -0.15f);
     wider_ = wider < 0 ? (1 - held) * wider : wider;
-    const float power = 1 + 2.5f * (std::min)(fall, 0.5f),
+    const float power = (1 + fall) / (1 - (std::min)(fall, 0.5f)),
                 softer = power * softening_ * bounded + (1 + 1.5f * fall) * wider_ * (1 - 0.6f * wider_);
     const float stiffer = (system.has_friction() ? 0.7f : 1.f) * drawn_in_ * (std::min)(root, max_root);
     deepest_share_ = system.deepest() > 0 ? (std::min)(deepest / system.deepest(), 2.f) : 0;
