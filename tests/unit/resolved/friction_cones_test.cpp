@@ -5,6 +5,8 @@
 #include <palpate/law/friction/coulomb.hpp>
 #include <palpate/resolved/contact_samples.hpp>
 #include <palpate/resolved/detail/friction_cones.hpp>
+#include <palpate/resolved/detail/loads_beside.hpp>
+#include <palpate/resolved/detail/reaction.hpp>
 #include <palpate/solver/contact_solver.hpp>
 
 #include <doctest/doctest.h>
@@ -75,6 +77,29 @@ TEST_CASE("the limit of tractions grows with the slope up to a rim's, and halves
   CHECK_RELATIVE(limit(0.9f, 1e-7f) / limit(0.9f, 0), 1 - 0.6 * (1 - 2 * nu) * 2 * std::numbers::pi / 3 * 0.1,
                  1e-6);
   CHECK(limit(1, 1) == 0.5f);
+}
+
+TEST_CASE("how far tractions point the same way is a share of 1, however small the first touch's loads are") {
+  // Loads of 1e-22 m^2 have squares that are 0, and what they pass on would be infinite from then on.
+  for (const float size : {1e-38f, 1e-30f, 1e-24f, 1e-22f, 1e-20f, 1e-9f}) {
+    CAPTURE(size);
+    Points points(0.3);
+    for (int i = 0; i < 20; ++i) {
+      points.add(V(1e-3f * i, 0, 0), -V::UnitY(), size);
+      points.lists.load.set(i, size * V(0.1f, -1, 0));
+    }
+    points.system.build();
+    points.lists.mu = 0.3f;
+    detail::Reaction<true> reaction;
+    reaction.resize(most);
+    for (int tick = 1; tick <= 100; ++tick) {
+      reaction.measure(points.system, points.system.directions(), points.loads, points.lists,
+                       detail::NoLoadsBeside(0, 0, 0), V::Zero());
+      CHECK(reaction.passes() >= 0);
+      CHECK(reaction.passes() <= 1);
+    }
+    if (size > 1e-10f) CHECK_RELATIVE(reaction.passes(), 1, 1e-5);  // (7/8)^100 = 2e-6, rounding of float
+  }
 }
 
 TEST_CASE(

@@ -161,8 +161,7 @@ TEST_CASE("a ball by a block's edge, pushed towards it: finite elements' force w
 TEST_CASE("a ball pressed into rubber of any nu: finite elements' force within 3 %, frictionless or held") {
   // Where nu < 1/2 the surface is drawn in beneath the ball, to where that is deeper. A block of 90 x 60 x 90
   // mm, 1 MPa, 1, 2, 4, 7.5 mm deep (bench/truth/data/contact, ball_nu0, ball_nu0_stuck, and the former with
-  // nu = 0.3). Measured: 1.6, 0.8, 2.6 % at most;
-  // without, 7 to 17, 1 to 3, 5 to 9 % less.
+  // nu = 0.3). Measured, in the order below: 1.6, 0.8, 2.6 % at most; before, 7 to 17, 2 to 3, 5 to 9 % less.
   const V size(0.09, 0.06, 0.09);
   const auto pressed = [&size](double nu, const auto& friction, const std::array<double, 4>& wanted) {
     CAPTURE(nu);
@@ -288,7 +287,8 @@ TEST_CASE("finite strain: Hertz's pressure has the strain d/R, and nu turns soft
     const float softening = strain.beside(Vec3<float>::UnitY(), 1).y();
     CHECK_RELATIVE(softening, softer, 0.02);  // 1,257 cells
     const float deep = 0.002f;
-    CHECK_RELATIVE(strain.depth(deep), deep / (1 + 0.75 * ((1 + softer) / (1 + stiffer) - 1)), 1e-4);
+    CHECK_RELATIVE(strain.depth(deep), deep / (1 + 0.75 * ((1 + softer) / (1 + stiffer) - 1)),
+                   1e-4);  // 1,257 cells
     CHECK((nu < 0.4) == (strain.depth(deep) > deep));
     // All has sunk alike, as under a flat face. Where a ball's points have, 4 mm at most, what is less deep is
     // the deeper, and all is as much softer as leaves the force.

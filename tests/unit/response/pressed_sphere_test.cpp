@@ -28,9 +28,8 @@ Eigen::VectorXd shape(ResponseTick<1>& tick, const ResponseDisplay& display, dou
 }  // namespace
 
 TEST_CASE(
-    "a ball: what is not linear is of second order in depth, in the field and in the force, but for a "
-    "surface "
-    "that is drawn in; along the normal it moves by its depth") {
+    "a ball: what is not linear is of second order in depth, in field and force, but for a surface that is "
+    "drawn in; along the normal it moves by its depth") {
   for (const double nu : {0.0, 0.3, 0.5}) {
     const ResponseField field = ellipsoid(nu);
     std::vector<V> points{on_flank(0).position};

@@ -6,6 +6,7 @@
 
 #include <palpate/core/scalar.hpp>
 #include <palpate/core/simd_math.hpp>
+#include <palpate/resolved/detail/load_fit.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/resolved/detail/vector_list.hpp>
 #include <palpate/response/second_order.hpp>
@@ -130,7 +131,7 @@ class FiniteStrain {
       moved += qi * (w.load(i) + given.load(i));
     }
     const float beta = root * (2.f / 3), kappa = across_ * beta / (1 + beta * beta),
-                a = std::sqrt(9 * load * load / (8 * std::numbers::pi_v<float> * pressed));
+                a = std::sqrt(carrying_area(load, pressed) / std::numbers::pi_v<float>);
     const Vec3<float> m = sum_of(directions) / load, F = sum_of(all) / load, w_mean = sum_of(moved) / load;
     const Mat3<float> across = m.squaredNorm() * Mat3<float>::Identity() - m * m.transpose(),
                       stiffened = kappa / (1 + kappa) * across;
@@ -173,7 +174,7 @@ class FiniteStrain {
                              const auto& regular) const noexcept {
     const float by_rest = system.direction(i).dot(regular.response()[i]),
                 near = pressure.r[i] + system.depth[i] - (std::max)(by_rest, 0.f);
-    return raised_ * (std::max)(near, 0.f) * (std::min)(per_pressure_ * pressure.q[i] / system.area(i), 1.f);
+    return raised_ * (std::max)(near, 0.f) * (std::min)(1.f, per_pressure_ * pressure.q[i] / system.area(i));
   }
 
  private:

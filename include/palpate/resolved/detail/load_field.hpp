@@ -17,8 +17,8 @@
 ///
 ///     u -= b (1 - s)^2 m,   s < 1     (over a square lattice of equal b they sum up to b to 1.12 b)
 ///
-/// At a rim, whose loads are uneven, 15 %: what is then inside the
-/// tool, as its points y_i and normals n_i tell, is moved out along the mean direction of pressing, M:
+/// At a rim, whose loads are uneven, the surface is off by 15 %: what is then inside the tool, as its points
+/// y_i and normals n_i tell, is moved out along the mean direction of pressing, M:
 ///
 ///     u += s t M,   t = min (n_i.(y_i - y) + e_i)/(n_i.M),   t >= 0,   n_i.M >= 0.3,   y = x + u
 ///

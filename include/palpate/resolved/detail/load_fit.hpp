@@ -13,6 +13,12 @@
 
 namespace palpate::detail {
 
+/// The area under a ball with the normal loads' sum `load` and the mean pressure by load `pressed`/`load`,
+/// `pressed` = sum q^2/A: 9/8 of their quotient [m^2].
+[[nodiscard]] inline float carrying_area(float load, float pressed) noexcept {
+  return 9 * load / 8 * (load / pressed);  // the square of a first touch's load would vanish
+}
+
 /// Moments of the loads q over the feet x of a contact, across its mean direction m:
 ///
 ///     mean = sum q x / sum q,   spread = (sum q r r^T + own sum q A / 12 I) / sum q,   r = x - mean

@@ -9,6 +9,7 @@
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/resolved/detail/vector_list.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 
@@ -72,7 +73,8 @@ class Reaction<true> {
     total_ = reduce(total), sticking_ = reduce(sticking);
     held_ = total_ > 0 ? 1 - reduce(rubbed) / total_ : 1;
     const float size = reduce(sizes);
-    const float same = size > 0 ? sum_of(sum).squaredNorm() / (size * size) : 0;
+    // At a first touch loads are so small that their squares vanish, and sizes with them.
+    const float same = size > 0 ? (std::min)((sum_of(sum) / size).squaredNorm(), 1.f) : 0;
     passes_ += (same - passes_) / 8;
   }
   void forget() noexcept { held_ = 1, passes_ = 0; }

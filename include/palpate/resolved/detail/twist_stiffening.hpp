@@ -69,7 +69,7 @@ class TwistStiffening {
     }
     const float turn = (std::max)(reduce(turns), 0.f), spread = reduce(spreads);
     if (!(spread > 0)) return;
-    const float a2 = (std::max)(9 * load * load / (8 * pi * reduce(pressures)), reduce_max(farthest) / 2),
+    const float a2 = (std::max)(carrying_area(load, reduce(pressures)) / pi, reduce_max(farthest) / 2),
                 a = std::sqrt(a2), tool = (std::min)(3 / (4 * pi) * (a * turn / spread), 0.3f),
                 strain = std::clamp(-reduce(drawn) / spread_of_all, 0.f, 0.1f),
                 dense = (std::min)(4 * pi / 3 * system.b() * reduce(pressures) / load, 0.2f),
