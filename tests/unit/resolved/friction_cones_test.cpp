@@ -85,7 +85,7 @@ TEST_CASE("how far tractions point the same way is a share of 1, however small t
     CAPTURE(size);
     Points points(0.3);
     for (int i = 0; i < 20; ++i) {
-      points.add(V(1e-3f * i, 0, 0), -V::UnitY(), size);
+      points.add(V(1e-3f * float(i), 0, 0), -V::UnitY(), size);
       points.lists.load.set(i, size * V(0.1f, -1, 0));
     }
     points.system.build();
