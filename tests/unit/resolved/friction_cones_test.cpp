@@ -77,6 +77,16 @@ TEST_CASE("the limit of tractions grows with the slope up to a rim's, and halves
   CHECK_RELATIVE(limit(0.9f, 1e-7f) / limit(0.9f, 0), 1 - 0.6 * (1 - 2 * nu) * 2 * std::numbers::pi / 3 * 0.1,
                  1e-6);
   CHECK(limit(1, 1) == 0.5f);
+  // So does how friction lifts the surface before the tool, which a coefficient above 1 no longer does more.
+  const float still = limit(0.9f, 0);
+  points.lists.mu = 0.5f;
+  CHECK_RELATIVE(limit(0.9f, 0) / still, 1 + 0.6 * 0.25 / 2 * (1 / 0.81 - 1), 1e-6);
+  points.lists.mu = 1;
+  const float most_lifted = limit(0.9f, 0);
+  points.lists.mu = 3;
+  CHECK(limit(0.9f, 0) == most_lifted);
+  points.passes = 0;
+  CHECK(limit(0.9f, 0) == still);
 }
 
 TEST_CASE("how far tractions point the same way is a share of 1, however small the first touch's loads are") {

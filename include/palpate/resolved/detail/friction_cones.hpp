@@ -36,13 +36,16 @@ namespace palpate::detail {
 ///
 /// Where a tool slides, friction takes mu p per area of its surface and length of the body's surface that
 /// passes it. Of a slope h both are larger than seen along m, by sqrt(1 + h^2) and sqrt(1 + h^2/2), the mean
-/// over directions. And p has pressed together what passes, by (1 - 2 nu) p/(4 mu) on a half-space, and two
+/// over directions. Friction lifts the surface before the tool and presses it down behind: with h_x along the
+/// path the pressures there become q/(1 -+ mu h_x), and lean by +- h_x, mu^2 h_x^2 of friction more, half of
+/// h^2 on the mean. And p has pressed together what passes, by (1 - 2 nu) p/(4 mu) on a half-space, and two
 /// thirds of that where friction drags it in (chosen on finite elements). Nothing passes where a tool
-/// turns in place, so it counts by w, how far all tractions t point the same way:
+/// turns in place, so these two count by w, how far all tractions t point the same way:
 ///
-///     s = sqrt(1 + h^2) sqrt(1 + h^2/2) (1 - w (1 - 2 nu) 2 pi/3 q/A),   w = |sum t|^2/(sum |t|)^2
+///     s = sqrt(1 + h^2) sqrt(1 + h^2/2) (1 + w mu^2 h^2/2) (1 - w (1 - 2 nu) 2 pi/3 q/A)
+///     w = |sum t|^2/(sum |t|)^2
 ///
-/// h <= 3/4, the last factor >= 1/2; w of the last ticks (reaction.hpp).
+/// h <= 3/4, mu <= 1 here, the last factor >= 1/2; w and mu of the last ticks (reaction.hpp).
 ///
 /// What is steeper is a tool's rim, round which nothing slides; 3/4 is chosen on finite elements.
 class FrictionCones {
@@ -70,6 +73,8 @@ class FrictionCones {
       slope.measure(system, fit, origin);
     SimdVec3<V> slopes{};
     V all{};
+    const float mu = (std::min)(lists.mu, 1.f);
+    const V steeper(passes * mu * mu / 2);
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const SimdVec3<V> m = system.directions().load(i), o = outward.load(i);
       const V q(loads + i), cosine = dot(o, m);
@@ -78,7 +83,7 @@ class FrictionCones {
       const SimdVec3<V> h = (min)(most, V(1.f)) * steep;
       axes_.store(i, h);
       slopes += q * h, all += q;
-      limit_per_mu(cosine, V(passes) * q / V(system.areas() + i)).copy_to(&lists.per_mu[i]);
+      limit_per_mu(cosine, V(passes) * q / V(system.areas() + i), steeper).copy_to(&lists.per_mu[i]);
     }
     twist.measure(system, loads, fit, axes_, lists.anchor);
     const Vec3<float> mean = sum_of(slopes) / (std::max)(reduce(all), tiny);
@@ -95,11 +100,13 @@ class FrictionCones {
   static constexpr float rim_slope = 0.75f, rim = 0.8f;  // and its cosine
   static constexpr float tiny = (std::numeric_limits<float>::min)();
 
-  // s of points whose tool has a normal at that cosine to m, and of q/A.
-  [[nodiscard]] PALPATE_INLINE V limit_per_mu(const V& cosine, const V& q_per_area) const noexcept {
-    const V area = V(1.f) / clamp(cosine, rim, 1.f), stretch = sqrt(V(0.5f) * (V(1.f) + area * area)),
+  // s of points whose tool has a normal at that cosine to m; of w q/A and w mu^2/2.
+  [[nodiscard]] PALPATE_INLINE V limit_per_mu(const V& cosine, const V& q_per_area,
+                                              const V& steeper) const noexcept {
+    const V area = V(1.f) / clamp(cosine, rim, 1.f), area2 = area * area,
+            stretch = sqrt(V(0.5f) * (V(1.f) + area2)), lift = V(1.f) + steeper * (area2 - V(1.f)),
             strain = (max)(V(strain_across_) * q_per_area, V(-0.5f));
-    return area * stretch * (V(1.f) + strain);
+    return area * stretch * lift * (V(1.f) + strain);
   }
 
   float lean_, strain_across_;  // p/(6 mu) = 2 pi/3 q/A

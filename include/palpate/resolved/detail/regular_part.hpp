@@ -5,6 +5,7 @@
 /// beneath them, a small matrix, and back. Per tick.
 
 #include <palpate/core/fixed_vector.hpp>
+#include <palpate/resolved/detail/bounded_list.hpp>
 #include <palpate/resolved/detail/load_prisms.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/response/response_field.hpp>
@@ -23,28 +24,35 @@ class RegularPart {
  public:
   using V = VectorList::V;
   static constexpr bool active = true;
-  /// Nodes beneath a contact; points beyond them have no regular part.
-  static constexpr std::size_t max_nodes = 128;
+  /// Nodes beneath a contact of so many points; points beyond them have no regular part. Where a tool rests
+  /// on a face of the body there may be more nodes than points.
+  [[nodiscard]] static constexpr std::size_t most_nodes(std::size_t points) noexcept {
+    return std::clamp<std::size_t>(points, 128, 512);
+  }
 
   template <class Body>
   RegularPart(const Body& body, std::size_t capacity)
       : prisms_(body.field().load_mesh()),
         slot_of_(body.field().load_mesh().nodes().size(), none),
-        node_(max_nodes, 0),
-        tick_of_(max_nodes, 0),
-        index_(max_nodes, 0),
-        kept_(max_nodes * max_nodes, Mat3<float>::Zero()) {
+        most_((std::min)(most_nodes(capacity), slot_of_.size())),
+        node_(most_, 0),
+        tick_of_(most_, 0),
+        index_(most_, 0),
+        kept_(most_ * most_, Mat3<float>::Zero()),
+        used_(most_),
+        was_used_(most_),
+        beside_(most_) {
     weights_.resize(capacity);
     for (auto* list : {&w_, &w_step_}) list->resize(capacity);
-    const std::size_t padded = AlignedList<float>::padded(4 * max_nodes);
+    const std::size_t padded = AlignedList<float>::padded(4 * most_);
     for (auto* list : {&load_, &u_, &u_of_all_, &u_beside_}) list->resize(padded);
-    matrix_.resize(padded * 3 * max_nodes);
+    matrix_.resize(padded * 3 * most_);
   }
 
   void clear() noexcept {
     ++tick_;
     size_ = 0;
-    was_used_ = used_;
+    std::swap(used_, was_used_);
     used_.clear();
     has_all_ = true;
     beside_.clear();
@@ -203,7 +211,7 @@ class RegularPart {
   };
   using Weights = FixedVector<Weight, LoadMesh::most_beneath>;
 
-  [[nodiscard]] Mat3<float>& kept(std::size_t k, std::size_t l) noexcept { return kept_[k * max_nodes + l]; }
+  [[nodiscard]] Mat3<float>& kept(std::size_t k, std::size_t l) noexcept { return kept_[k * most_ + l]; }
 
   // Weights at the solved nodes around x. Nodes that are not in use come in if `take_in`.
   void place(const ResponseField& field, const Vec3<double>& x, std::uint32_t& triangle, Weights& weights,
@@ -233,12 +241,12 @@ class RegularPart {
   std::uint16_t use(const ResponseField& field, std::uint32_t node) noexcept {
     std::uint16_t slot = slot_of_[node];
     if (slot == none) {
-      if (used_.size() == max_nodes) {
+      if (used_.full()) {
         has_all_ = false;
         return none;
       }
       slot = 0;  // the one that was in use longest ago
-      for (std::uint16_t k = 1; k < max_nodes; ++k)
+      for (std::uint16_t k = 1; k < most_; ++k)
         if (tick_of_[k] < tick_of_[slot]) slot = k;
       if (tick_of_[slot] != 0) slot_of_[node_[slot]] = none;
       slot_of_[node] = slot;
@@ -257,7 +265,7 @@ class RegularPart {
   // the mean of both ways.
   void read(const ResponseField& field, std::size_t k) noexcept {
     changed_ = true;
-    for (std::size_t l = 0; l < max_nodes; ++l) {
+    for (std::size_t l = 0; l < most_; ++l) {
       if (tick_of_[l] == 0) continue;
       Mat3<double> kl, lk;
       for (std::size_t c = 0; c < 3; ++c) {
@@ -313,16 +321,17 @@ class RegularPart {
 
   LoadPrisms prisms_;
   std::vector<std::uint16_t> slot_of_;  // of a load mesh's node, or none
+  std::size_t most_;                    // slots
   std::vector<std::uint32_t> node_;     // of a slot
   std::vector<std::uint32_t> tick_of_;  // when a slot was in use last; 0: never
   std::vector<std::uint16_t> index_;    // of a slot, among those in use
   std::vector<Mat3<float>> kept_;       // between slots
   std::vector<Weights> weights_;        // of the points
   VectorList w_, w_step_;               // at the points: of all loads, of those that came last
-  FixedVector<std::uint16_t, max_nodes> used_, was_used_;
+  BoundedList<std::uint16_t> used_, was_used_;
   AlignedList<float> load_, u_;             // of the nodes in use, four numbers each
   AlignedList<float> u_of_all_, u_beside_;  // likewise, of response() and by other tools' loads
-  FixedVector<Four, max_nodes> beside_;     // loads of other tools, likewise
+  BoundedList<Four> beside_;                // loads of other tools, likewise
   AlignedList<float> matrix_;               // by column
   Mat3<float> common_ = Mat3<float>::Zero();
   std::size_t size_ = 0, stride_ = 0, nodes_ = 0;  // nodes_: in use by points
