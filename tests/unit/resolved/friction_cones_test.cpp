@@ -94,7 +94,7 @@ TEST_CASE("how far tractions point the same way is a share of 1, however small t
   for (const float size : {1e-38f, 1e-30f, 1e-24f, 1e-22f, 1e-20f, 1e-9f}) {
     CAPTURE(size);
     Points points(0.3);
-    for (int i = 0; i < 20; ++i) {
+    for (std::size_t i = 0; i < 20; ++i) {
       points.add(V(1e-3f * float(i), 0, 0), -V::UnitY(), size);
       points.lists.load.set(i, size * V(0.1f, -1, 0));
     }
