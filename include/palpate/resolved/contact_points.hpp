@@ -13,7 +13,8 @@ namespace palpate {
 
 /// Up to N points beneath the surface, of which half carry load when a ball is pressed; the tool is made of
 /// `contact_samples`. Several contacts, edges, tilt and rolling need no rule of their own. With more than N
-/// the surplus is left out (`Status::point_overflow`): the tool then is too fine. `Beside`: as many loads of
+/// the surplus is left out (`Status::point_overflow`): the tool then is too fine. On a response field N
+/// bounds the nodes of its load mesh beneath the tool, too, between 128 and 512. `Beside`: as many loads of
 /// other tools on the same body are felt, those that `State::set_beside()` is given.
 template <std::size_t N, std::size_t Beside = 0>
 struct ContactPoints {

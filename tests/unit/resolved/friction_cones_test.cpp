@@ -77,7 +77,7 @@ TEST_CASE("the limit of tractions grows with the slope up to a rim's, and halves
   CHECK_RELATIVE(limit(0.9f, 1e-7f) / limit(0.9f, 0), 1 - 0.6 * (1 - 2 * nu) * 2 * std::numbers::pi / 3 * 0.1,
                  1e-6);
   CHECK(limit(1, 1) == 0.5f);
-  // So does how friction lifts the surface before the tool, which a coefficient above 1 no longer does more.
+  // Lift counts by that, too; a coefficient above 1 lifts the surface as 1 does.
   const float still = limit(0.9f, 0);
   points.lists.mu = 0.5f;
   CHECK_RELATIVE(limit(0.9f, 0) / still, 1 + 0.6 * 0.25 / 2 * (1 / 0.81 - 1), 1e-6);

@@ -39,13 +39,14 @@ namespace palpate::detail {
 /// over directions. Friction lifts the surface before the tool and presses it down behind: with h_x along the
 /// path the pressures there become q/(1 -+ mu h_x), and lean by +- h_x, mu^2 h_x^2 of friction more, half of
 /// h^2 on the mean. And p has pressed together what passes, by (1 - 2 nu) p/(4 mu) on a half-space, and two
-/// thirds of that where friction drags it in (chosen on finite elements). Nothing passes where a tool
-/// turns in place, so these two count by w, how far all tractions t point the same way:
+/// thirds of that where friction drags it in (chosen on finite elements; mu is the shear modulus in these).
+/// Nothing passes where a tool turns in place, so these two count by w, how far all tractions t point the
+/// same way:
 ///
 ///     s = sqrt(1 + h^2) sqrt(1 + h^2/2) (1 + w mu^2 h^2/2) (1 - w (1 - 2 nu) 2 pi/3 q/A)
 ///     w = |sum t|^2/(sum |t|)^2
 ///
-/// h <= 3/4, mu <= 1 here, the last factor >= 1/2; w and mu of the last ticks (reaction.hpp).
+/// h <= 3/4, mu <= 1 here, the last factor >= 1/2; w of the last ticks (reaction.hpp), mu of the last solve.
 ///
 /// What is steeper is a tool's rim, round which nothing slides; 3/4 is chosen on finite elements.
 class FrictionCones {
@@ -74,7 +75,7 @@ class FrictionCones {
     SimdVec3<V> slopes{};
     V all{};
     const float mu = (std::min)(lists.mu, 1.f);
-    const V steeper(passes * mu * mu / 2);
+    const V lift_per_h2(passes * mu * mu / 2);
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const SimdVec3<V> m = system.directions().load(i), o = outward.load(i);
       const V q(loads + i), cosine = dot(o, m);
@@ -83,7 +84,7 @@ class FrictionCones {
       const SimdVec3<V> h = (min)(most, V(1.f)) * steep;
       axes_.store(i, h);
       slopes += q * h, all += q;
-      limit_per_mu(cosine, V(passes) * q / V(system.areas() + i), steeper).copy_to(&lists.per_mu[i]);
+      limit_per_mu(cosine, V(passes) * q / V(system.areas() + i), lift_per_h2).copy_to(&lists.per_mu[i]);
     }
     twist.measure(system, loads, fit, axes_, lists.anchor);
     const Vec3<float> mean = sum_of(slopes) / (std::max)(reduce(all), tiny);
@@ -102,9 +103,9 @@ class FrictionCones {
 
   // s of points whose tool has a normal at that cosine to m; of w q/A and w mu^2/2.
   [[nodiscard]] PALPATE_INLINE V limit_per_mu(const V& cosine, const V& q_per_area,
-                                              const V& steeper) const noexcept {
+                                              const V& lift_per_h2) const noexcept {
     const V area = V(1.f) / clamp(cosine, rim, 1.f), area2 = area * area,
-            stretch = sqrt(V(0.5f) * (V(1.f) + area2)), lift = V(1.f) + steeper * (area2 - V(1.f)),
+            stretch = sqrt(V(0.5f) * (V(1.f) + area2)), lift = V(1.f) + lift_per_h2 * (area2 - V(1.f)),
             strain = (max)(V(strain_across_) * q_per_area, V(-0.5f));
     return area * stretch * lift * (V(1.f) + strain);
   }
