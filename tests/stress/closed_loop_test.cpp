@@ -205,11 +205,11 @@ Scene region_on_bulge(double K) {
 
 /// The response field's law, at a workspace scale that makes first contact about K: it grows with depth.
 Scene ball_on_field(double K) {
-  using FieldTouch = Touch<BallTool, CoulombFriction<double>>;
+  using FieldTouch = Touch<PointBall, CoulombFriction<double>>;
   static const auto touch = std::make_shared<FieldTouch>(
       ElasticBody(test::ellipsoid_mesh(V(0.06, 0.04, 0.04), 16),
                   {.E = 3e4, .nu = 0.49, .fixed = below(-0.036), .vertices = 200}),
-      ball(0.015), friction);
+      point_ball(0.015), friction);
   return scene("ball, response field's map, samples", touch, V::Zero(), on(egg, V(0.01, 0.05, 0.005), 0.015),
                K / 1000);
 }

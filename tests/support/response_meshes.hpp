@@ -56,4 +56,20 @@ inline MeshData<double> ellipsoid_mesh(const Vec3<double>& axes, int n) {
   return mesh;
 }
 
+/// A box with rounded edges about the origin, as CAD programs write it: each flat face two triangles, each
+/// quarter of a rounding 2 n strips.
+inline MeshData<double> rounded_box_mesh(const Vec3<double>& half, double radius, int n) {
+  MeshData<double> mesh = box_mesh(Vec3<double>::Constant(2 * n + 1), 2 * n + 1);
+  for (auto& p : mesh.vertices) {
+    Vec3<double> out, middle;  // direction on the rounding; its centre
+    for (int i = 0; i < 3; ++i) {
+      const bool upper = p[i] > n + 0.5;
+      out[i] = std::tan((p[i] - n - (upper ? 1 : 0)) / n * (std::numbers::pi / 4));
+      middle[i] = (upper ? 1 : -1) * (half[i] - radius);
+    }
+    p = middle + radius * out.normalized();
+  }
+  return mesh;
+}
+
 }  // namespace palpate::test

@@ -5,14 +5,15 @@
 ///
 /// | tool                       | tool coordinates [m]        | contact area to resolve A_0           |
 /// |----------------------------|-----------------------------|---------------------------------------|
-/// | `ball(radius)`             | about the origin            | none: a point with a law              |
+/// | `ball(radius)`             | about the origin            | a tenth of its surface                |
+/// | `point_ball(radius)`       | about the origin            | none: one point with a law            |
 /// | `capsule(radius, length)`  | about the origin, along y   | 1/13 of it; 1 to 4 times an end's     |
 /// | `cylinder(radius, length)` | about the origin, along y   | an end's face                         |
 /// | `box(size)`                | about the origin            | the face across y                     |
 /// | `tool_mesh(mesh)`          | the mesh's own              | a tenth of the surface                |
 ///
-/// A capsule's half then has 256 points, as many as Touch takes beneath the surface. An end's contact area is
-/// that where it is in by a quarter of its radius: it has 10 points at least.
+/// A capsule's half then has 256 points, as many as Touch takes beneath the surface, a ball's 200. An end's
+/// contact area is that where it is in by a quarter of its radius: it has 10 points at least.
 
 #include <palpate/core/error.hpp>
 #include <palpate/core/pose.hpp>
@@ -20,8 +21,9 @@
 
 namespace palpate {
 
-/// A ball about the tool's origin.
-struct BallTool {
+/// A ball about the tool's origin, felt as one point with a law: no torque about its centre, no rolling, and
+/// no other tool on the body is felt.
+struct PointBall {
   double radius = 0;                                   ///< [m], > 0
   Vec3<double> centre_of_mass = Vec3<double>::Zero();  ///< [m]
 };
@@ -40,10 +42,12 @@ struct ToolParams {
   double spacing = 0;       ///< of the points that feel [m]; 0: 40 on A_0, but at most 1,500 in all
 };
 
-[[nodiscard]] inline BallTool ball(double radius, const Vec3<double>& centre_of_mass = Vec3<double>::Zero()) {
-  require_positive(radius, "ball", "radius [m] must be > 0");
+[[nodiscard]] inline PointBall point_ball(double radius,
+                                          const Vec3<double>& centre_of_mass = Vec3<double>::Zero()) {
+  require_positive(radius, "point_ball", "radius [m] must be > 0");
   return {radius, centre_of_mass};
 }
+[[nodiscard]] MeshTool ball(double radius, const ToolParams& params = {});
 [[nodiscard]] MeshTool capsule(double radius, double length, const ToolParams& params = {});
 [[nodiscard]] MeshTool cylinder(double radius, double length, const ToolParams& params = {});
 [[nodiscard]] MeshTool box(const Vec3<double>& size, const ToolParams& params = {});

@@ -5,7 +5,7 @@
 ///
 /// | tool       | surface             | force                           | shape                     |
 /// |------------|---------------------|---------------------------------|---------------------------|
-/// | `BallTool` | samples, grown by R | Hertz's law, fitted to spheres' | `ResponseBallDeformation` |
+/// | `PointBall` | samples, grown by R | Hertz's law, fitted to spheres' | `ResponseBallDeformation` |
 /// | `MeshTool` | samples             | resolved at the tool's points   | `ResponseLoadDeformation` |
 
 #include <palpate/contact/topology.hpp>
@@ -38,14 +38,14 @@ template <class Tool>
 struct TouchParts;
 
 template <>
-struct TouchParts<BallTool> {
+struct TouchParts<PointBall> {
   using Object = SampledSurface<GrownSurface<SharedSurface<MeshSurface<double>>>>;
   using Force = HertzMap<double>;
   using Contacts = SinglePoint;
   using Shape = ResponseBallDeformation<double, CurvedSurface>;
   static constexpr std::size_t max_drawn = 1;
 
-  TouchParts(const ElasticBody& body, const BallTool& ball);
+  TouchParts(const ElasticBody& body, const PointBall& ball);
 
   PointTool<double> tool;
   Contacts contacts{};
@@ -55,7 +55,7 @@ struct TouchParts<BallTool> {
   Shape shape;
 
  private:
-  TouchParts(const ElasticBody& body, const BallTool& ball, const CurvedSurface& curved);
+  TouchParts(const ElasticBody& body, const PointBall& ball, const CurvedSurface& curved);
 };
 
 template <>

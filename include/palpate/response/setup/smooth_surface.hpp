@@ -10,6 +10,7 @@
 /// The factor 1/2 makes it exact to third order for a quadric. Source: [boubekeur2008].
 
 #include <palpate/geometry/bvh.hpp>
+#include <palpate/geometry/detail/corner_weight.hpp>
 #include <palpate/response/setup/constants.hpp>
 #include <palpate/response/setup/mesh_edges.hpp>
 
@@ -69,6 +70,9 @@ class SmoothSurface {
     }
     std::uint32_t fans = 0;
     const std::vector<std::uint32_t> fan = corner_fans(mesh_.triangles, edges_, crease_, fans);
+    std::vector<double> largest(fans, 0);
+    for (std::size_t i = 0; i < fan.size(); ++i)
+      largest[fan[i]] = (std::max)(largest[fan[i]], face(static_cast<std::uint32_t>(i / 3)).norm());
     std::vector<Vec3d> normal(fans, Vec3d::Zero());
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
       const Vec3d n = unit_or(face(t), Vec3d(Vec3d::Zero()));
@@ -76,7 +80,8 @@ class SmoothSurface {
         const Vec3d& p = mesh_.vertices[mesh_.triangles[t][c]];
         const Vec3d u = mesh_.vertices[mesh_.triangles[t][(c + 1) % 3]] - p,
                     v = mesh_.vertices[mesh_.triangles[t][(c + 2) % 3]] - p;
-        normal[fan[3 * t + c]] += n * std::atan2(u.cross(v).norm(), u.dot(v));
+        const double angle = std::atan2(u.cross(v).norm(), u.dot(v));
+        normal[fan[3 * t + c]] += n * corner_weight(angle, face(t).norm(), largest[fan[3 * t + c]]);
       }
     }
     corner_normal_.resize(fan.size());

@@ -5,6 +5,7 @@
 
 #include <palpate/geometry/box.hpp>
 #include <palpate/geometry/cylinder.hpp>
+#include <palpate/geometry/sphere.hpp>
 #include <palpate/touch/tools.hpp>
 
 #include <algorithm>
@@ -24,22 +25,28 @@ inline constexpr std::size_t tool_vertices = 1500;    // chosen: chords of a cir
 /// Surface of revolution about y: half a circle of `radius` at each end, `length` between their centres.
 [[nodiscard]] inline MeshData<double> capsule_mesh(double radius, double length) {
   constexpr std::uint32_t rings = 12, around = 48;  // of each end; chosen as tool_vertices
+  // Of the side twice as far apart, at most 64 (chosen): where triangles are uneven the side bulges.
+  const double along = 4 * std::numbers::pi * radius / around;
+  const auto side = static_cast<std::uint32_t>(std::clamp(std::ceil(length / along), 1., 64.));
   MeshData<double> mesh;
   mesh.vertices.push_back({0, length / 2 + radius, 0});
+  std::uint32_t made = 0;
   const auto ring = [&](double angle, double shift) {
     for (std::uint32_t k = 0; k < around; ++k) {
       const double turn = 2 * std::numbers::pi * k / around, r = radius * std::cos(angle);
       mesh.vertices.push_back({r * std::sin(turn), shift + radius * std::sin(angle), r * std::cos(turn)});
     }
+    ++made;
   };
   for (std::uint32_t i = 1; i <= rings; ++i) ring(std::numbers::pi / 2 * (1 - double(i) / rings), length / 2);
+  for (std::uint32_t i = 1; i < side; ++i) ring(0, length * (0.5 - double(i) / side));
   for (std::uint32_t i = 0; i < rings; ++i) ring(-std::numbers::pi / 2 * i / rings, -length / 2);
   mesh.vertices.push_back({0, -length / 2 - radius, 0});
   const auto last = static_cast<std::uint32_t>(mesh.vertices.size()) - 1;
   for (std::uint32_t k = 0; k < around; ++k) {
     const std::uint32_t next = (k + 1) % around;
     mesh.triangles.push_back({0, 1 + k, 1 + next});
-    for (std::uint32_t i = 0; i + 1 < 2 * rings; ++i) {
+    for (std::uint32_t i = 0; i + 1 < made; ++i) {
       const std::uint32_t a = 1 + i * around + k, b = 1 + i * around + next;
       mesh.triangles.push_back({a, a + around, b + around});
       mesh.triangles.push_back({a, b + around, b});
@@ -63,6 +70,11 @@ inline constexpr std::size_t tool_vertices = 1500;    // chosen: chords of a cir
 }
 
 }  // namespace detail
+
+PALPATE_COMPILED_INLINE MeshTool ball(double radius, const ToolParams& params) {
+  require_positive(radius, "ball", "radius [m] must be > 0");
+  return detail::mesh_tool("ball", Sphere<double>({.radius = radius}).mesh(detail::tool_vertices), 0, params);
+}
 
 PALPATE_COMPILED_INLINE MeshTool capsule(double radius, double length, const ToolParams& params) {
   require_positive(radius, "capsule", "radius [m] must be > 0");

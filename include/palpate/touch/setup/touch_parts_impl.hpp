@@ -50,11 +50,11 @@ template <ForceMap Map>
   return std::move(made.map);
 }
 
-PALPATE_COMPILED_INLINE TouchParts<BallTool>::TouchParts(const ElasticBody& body, const BallTool& ball)
+PALPATE_COMPILED_INLINE TouchParts<PointBall>::TouchParts(const ElasticBody& body, const PointBall& ball)
     : TouchParts(body, ball, curved_surface(body, ball.radius)) {}
 
-PALPATE_COMPILED_INLINE TouchParts<BallTool>::TouchParts(const ElasticBody& body, const BallTool& ball,
-                                                         const CurvedSurface& curved)
+PALPATE_COMPILED_INLINE TouchParts<PointBall>::TouchParts(const ElasticBody& body, const PointBall& ball,
+                                                          const CurvedSurface& curved)
     : tool{.tip = Vec3<double>::Zero(), .centre_of_mass = ball.centre_of_mass},
       object(GrownSurface(SharedSurface(body.surface()), ball.radius),
              {.spacing = sample_spacing(body.surface()->lower(), body.surface()->upper(),
