@@ -13,7 +13,7 @@ template <Real S>
 struct SurfaceLoad {
   Vec3<S> position;                       ///< on the undeformed surface [m]
   Vec3<S> direction;                      ///< of pressing, into the body, unit
-  Vec3<S> force;                          ///< on the body [N]
+  Vec3<S> force;                          ///< on the body, seen from afar: with what makes it sway [N]
   S area;                                 ///< of the cell [m^2]
   Vec3<S> by_strain = Vec3<S>::Zero();    ///< finite strain: near it force + by_strain acts [N]
   Vec3<S> shift = Vec3<S>::Zero();        ///< finite strain: seen from afar it acts at position + shift [m]

@@ -9,6 +9,7 @@
 #include <palpate/detection/tool_points.hpp>
 #include <palpate/resolved/contact_points.hpp>
 #include <palpate/resolved/detail/body_shift.hpp>
+#include <palpate/resolved/detail/body_sway.hpp>
 #include <palpate/resolved/detail/bounded_list.hpp>
 #include <palpate/resolved/detail/carried_surface.hpp>
 #include <palpate/resolved/detail/contact_area.hpp>
@@ -54,6 +55,7 @@ class ResolvedState {
         carried_(capacity),
         strain_(body.nu()),
         cones_(body.nu(), capacity),
+        sway_(body),
         gradient_(capacity) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
     last_.resize(padded), pressure_.resize(padded), result_.resize(padded), reaction_.resize(padded);
@@ -73,10 +75,11 @@ class ResolvedState {
       const PointMemory& p = points_[touching_[inside_[i]].point];
       if (!p.loaded) continue;
       const auto in_S = [](const Vec3<float>& a) -> Vec3<S> { return a.template cast<S>(); };
-      const Vec3<float> m = system_.direction(i);
-      out.push_back({origin_ + in_S(carried_.at_rest(system_.foot(i))), in_S(m), per_load_ * in_S(p.load),
-                     static_cast<S>(system_.area(i)), per_load_ * in_S(strain_.beside(m, m.dot(p.load))),
-                     in_S(strain_.shift()), contacts_[k++].position, in_S(touching_[inside_[i]].outward),
+      const Vec3<float> m = system_.direction(i), sway = m.dot(p.load) * sway_.pull();
+      out.push_back({origin_ + in_S(carried_.at_rest(system_.foot(i))), in_S(m),
+                     per_load_ * in_S(p.load + sway), static_cast<S>(system_.area(i)),
+                     per_load_ * in_S(strain_.beside(m, m.dot(p.load)) - sway), in_S(strain_.shift()),
+                     contacts_[k++].position, in_S(touching_[inside_[i]].outward),
                      static_cast<S>(strain_.raised(i, system_, pressure_, regular_))});
     }
   }
@@ -111,7 +114,7 @@ class ResolvedState {
   [[nodiscard]] Pose<S> over(const Pose<S>& X) const noexcept { return beside_.over(X); }
   /// The regular displacement there; and whether another tick at the same pose would change nothing.
   [[nodiscard]] S shift() const noexcept { return static_cast<S>(shift_.most()); }
-  [[nodiscard]] bool has_settled() const noexcept { return shift_.has_settled(); }
+  [[nodiscard]] bool has_settled() const noexcept { return shift_.has_settled() && sway_.has_settled(); }
   /// True where nothing touches and the body may have come back in part: look again, `tries` from 1 on.
   [[nodiscard]] bool look_again(int tries) noexcept { return touching_.empty() && shift_.come_back(tries); }
   /// A leaf of the tool's points over the surface as it lay before the body bent and friction carried it.
@@ -183,6 +186,7 @@ class ResolvedState {
   using Strain = std::conditional_t<RegularPart::active, FiniteStrain, LinearStrain>;
   using Cones = std::conditional_t<has_friction, ConesOf<Strain::active>, NoCones>;
   using Shift = std::conditional_t<RegularPart::active, BodyShift<S>, NoBodyShift>;
+  using Sway = std::conditional_t<has_friction && RegularPart::active, BodySway, NoBodySway>;
   using Beside = std::conditional_t<(max_beside > 0), LoadsBeside<S>, NoLoadsBeside>;
   static constexpr float near = 0.05f;   // of the depth; with less gap points are solved for at once
   static constexpr int most_rounds = 3;  // in which points may come in within a tick
@@ -190,7 +194,7 @@ class ResolvedState {
 
   [[nodiscard]] std::size_t size() const noexcept { return inside_.size(); }
   void forget() noexcept {
-    slides_ = false, strength_ = {}, carried_.clear(origin_);
+    slides_ = false, strength_ = {}, carried_.clear(origin_), sway_.forget();
     shift_.forget(), gradient_.forget(), beside_.drop();
     if constexpr (has_friction) cones_.slope.forget(), reaction_.forget(), result_.step = 0;
     if constexpr (Strain::active) strain_.forget(), regular_.take_in();
@@ -273,16 +277,8 @@ class ResolvedState {
       strain_.add(system_, loads, u), cones_.twist.add(system_, loads, u);
   }
   void begin_loads(float share) noexcept {
-    const SimdVec3<V> moved = each<V>(regular_.moved());
-    for (std::size_t i = 0; i < system_.stride(); i += V::size()) {
-      const SimdVec3<V> P = last_.load.load(i) + V(share) * last_.load_step.load(i);
-      (max)(dot(system_.directions().load(i), P), V(0.f)).copy_to(&pressure_.q[i]);
-      if constexpr (has_friction) {
-        result_.load.store(i, P);
-        result_.anchor.store(i, last_.anchor.load(i) - beside_.load(i) - moved);
-        V(&last_.loaded[i]).copy_to(&result_.anchored[i]);
-      }
-    }
+    begin_with<has_friction>(system_, last_, share, beside_, regular_.moved() + sway_.moved(), pressure_,
+                             result_);
     if constexpr (has_friction)
       cones_.place(system_, pressure_.q.data(), origin_, gradient_.slope(), reaction_.passes(), result_);
   }
@@ -338,7 +334,8 @@ class ResolvedState {
     }
     if constexpr (!has_friction) reaction_.measure(system_, pressure_.q, gradient_);
     if constexpr (has_friction)
-      reaction_.measure(system_, cones_.axes(system_), pressure_.q, result_, beside_, regular_.moved());
+      reaction_.measure(system_, cones_.axes(system_), pressure_.q, result_, beside_,
+                        regular_.moved() + sway_.moved());
     carried_.clear(origin_);
     for (std::size_t i = 0; i < size(); ++i) {
       const TouchingPoint& at = touching_[inside_[i]];
@@ -364,6 +361,8 @@ class ResolvedState {
     }
     if constexpr (has_friction) {
       carried_.build();
+      if (!regular_.is_left_out())
+        sway_.measure(system_, pressure_.q.data(), result_.load, regular_, beside_, acts_at({0, 0, 0}));
       slides_ = strength_.remember(reaction_.total(), reaction_.sticking(), system_, pressure_, result_);
     }
   }
@@ -383,6 +382,7 @@ class ResolvedState {
   PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<has_friction, CarriedSurface<S>, StillSurface> carried_;
   PALPATE_NO_UNIQUE_ADDRESS Strain strain_;
   PALPATE_NO_UNIQUE_ADDRESS Cones cones_;
+  PALPATE_NO_UNIQUE_ADDRESS Sway sway_;
   PALPATE_NO_UNIQUE_ADDRESS GradientOf<RegularPart, has_friction> gradient_;
   PALPATE_NO_UNIQUE_ADDRESS Shift shift_;
   Residual residual_;

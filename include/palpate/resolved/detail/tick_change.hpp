@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file How much of what the last tick changed goes on.
+/// @file What a tick begins with: how much of what the last one changed goes on.
 
 #include <palpate/core/scalar.hpp>
 #include <palpate/core/simd_math.hpp>
+#include <palpate/resolved/detail/convex_problem.hpp>
+#include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/resolved/detail/touching_point.hpp>
 #include <palpate/resolved/detail/vector_list.hpp>
 
@@ -43,6 +45,24 @@ template <bool has_friction, class Given>
   }
   const float whole = reduce(size2);
   return whole > 0 ? clamp(reduce(meets) / whole, -most, most) : 0.f;
+}
+
+/// The loads P + share dP; with friction also the anchors, less what the surface is displaced by besides: by
+/// others' loads, `given`, and by `moved`.
+template <bool has_friction, class Given>
+void begin_with(const PointSystem& system, const MemoryLists& last, float share, const Given& given,
+                const Vec3<float>& moved, PressureLists& pressure, auto& result) noexcept {
+  using V = VectorList::V;
+  const SimdVec3<V> all = each<V>(moved);
+  for (std::size_t i = 0; i < system.stride(); i += V::size()) {
+    const SimdVec3<V> P = last.load.load(i) + V(share) * last.load_step.load(i);
+    (max)(dot(system.directions().load(i), P), V(0.f)).copy_to(&pressure.q[i]);
+    if constexpr (has_friction) {
+      result.load.store(i, P);
+      result.anchor.store(i, last.anchor.load(i) - given.load(i) - all);
+      V(&last.loaded[i]).copy_to(&result.anchored[i]);
+    }
+  }
 }
 
 }  // namespace palpate::detail
