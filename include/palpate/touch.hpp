@@ -28,11 +28,11 @@ struct Felt {
   Wrench<double> wrench;  ///< on the tool: force [N], torque about its centre of mass [N m]
   Status status;
   std::span<const ContactState<double>> contacts;  ///< a whole tool's as one; valid until the next tick
-  std::span<const PointContact<double>> points;    ///< force, pressure, stick or slip; none of a ball
+  std::span<const PointContact<double>> points;    ///< force, pressure, stick or slip; none of a point_ball
 };
 
-/// A tool on an elastic body: force and shape from the body's response field. A ball has a law that is fitted
-/// to it, any other tool contact resolved at its points (docs/resolved.md).
+/// A tool on an elastic body: force and shape from the body's response field, contact resolved at the tool's
+/// points (docs/resolved.md); a `point_ball` is one point with a law that is fitted to the field.
 ///
 /// | call     | thread        | real time                                                        |
 /// |----------|---------------|------------------------------------------------------------------|
@@ -40,7 +40,7 @@ struct Felt {
 /// | `draw()` | any one other | the same; contacts of the newest tick, handed over without locks |
 ///
 /// Coordinates are the object's [m], y up, unless an object pose is given. It stays where it was made, for
-/// threads hold on to it. Set-up takes up to some seconds: a ball's law is fitted all over the body.
+/// threads hold on to it. Set-up takes up to some seconds: a `point_ball`'s law is fitted all over the body.
 /// Reports what its parts report.
 template <class Tool, FrictionLaw Friction = Frictionless<double>>
   requires std::same_as<typename Friction::Scalar, double>
@@ -119,7 +119,7 @@ class Touch {
   [[nodiscard]] const ElasticBody& body() const noexcept { return body_; }
   [[nodiscard]] const Tool& tool() const noexcept { return tool_; }
   [[nodiscard]] const Solver& solver() const noexcept { return solver_; }
-  /// A ball's force law F(D) at x, a position near the surface [m].
+  /// A `point_ball`'s force law F(D) at x, a position near the surface [m].
   [[nodiscard]] auto law_at(const Vec3<double>& x) const noexcept
     requires(!is_resolved)
   {

@@ -3,10 +3,10 @@
 
 /// @file What Touch is made of, by the kind of tool: surface, law, regions and shape that suit it.
 ///
-/// | tool       | surface             | force                           | shape                     |
-/// |------------|---------------------|---------------------------------|---------------------------|
+/// | tool        | surface             | force                           | shape                     |
+/// |-------------|---------------------|---------------------------------|---------------------------|
 /// | `PointBall` | samples, grown by R | Hertz's law, fitted to spheres' | `ResponseBallDeformation` |
-/// | `MeshTool` | samples             | resolved at the tool's points   | `ResponseLoadDeformation` |
+/// | `MeshTool`  | samples             | resolved at the tool's points   | `ResponseLoadDeformation` |
 
 #include <palpate/contact/topology.hpp>
 #include <palpate/core/absent.hpp>
@@ -24,7 +24,7 @@
 
 namespace palpate {
 
-/// How well a ball's law fits the body's response field.
+/// How well a `point_ball`'s law fits the body's response field.
 struct TouchFit {
   double worst_rms = 0;                       ///< of all positions: rms residual of F(D) over F's own rms [-]
   Vec3<double> where = Vec3<double>::Zero();  ///< there, on the undeformed surface [m]
