@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// @file How a body gives way sideways under the load that presses it: second order in displacement.
+/// @file The P-delta effect: a body under a load is more compliant sideways. Second order in displacement.
 
 #include <palpate/core/simd_math.hpp>
 #include <palpate/core/vector.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
 #include <palpate/resolved/detail/vector_list.hpp>
 #include <palpate/response/setup/element_mesh.hpp>
+#include <palpate/response/setup/mesh_edges.hpp>
 
 #include <array>
 #include <cmath>
@@ -16,9 +17,10 @@
 namespace palpate::detail {
 
 /// A body that is moved sideways moves on an arc about where it is fixed, and the load that presses it does
-/// work on that arc: as a column towards buckling it is more compliant sideways. The energy of that is, with
-/// the sum F of the loads, h from the contact to the middle of the fixed region, and w_h what is across h of
-/// the contact's mean regular displacement w, others' loads included,
+/// work on that arc: as a column towards buckling it is more compliant sideways (P-delta effect, geometric
+/// stiffness). The energy of that is, with the sum F of the loads, h from the contact to the middle of the
+/// fixed region, and w_h what is across h of the contact's mean regular displacement w, others' loads
+/// included,
 ///
 ///     -kappa/2 (F.h/D) w_h^2,   D = h^2 + s^2
 ///
@@ -47,7 +49,7 @@ class BodySway {
       if (!mesh.fixed_triangle[t]) continue;
       std::array<Vec3<double>, 3> p;
       for (std::size_t k = 0; k < 3; ++k) p[k] = mesh.vertices[mesh.triangles[t][k]];
-      const double A = (p[1] - p[0]).cross(p[2] - p[0]).norm() / 2;
+      const double A = area_vector(p[0], p[1], p[2]).norm();
       area += A, sum += A / 3 * (p[0] + p[1] + p[2]);
       for (std::size_t k = 0; k < 3; ++k) {
         const Vec3<double> middle = (p[k] + p[(k + 1) % 3]) / 2;  // exact for squares
@@ -95,8 +97,8 @@ class BodySway {
   [[nodiscard]] const Vec3<float>& pull() const noexcept { return pull_; }
 
  private:
-  static constexpr float kappa = 0.5f, most = 0.5f;
-  static constexpr float settled = 1e-4f;  // of w_h, by which no force is felt to change
+  static constexpr float kappa = 0.5f, most = 0.5f;  // most: of |C p| over |w_h|; both chosen, see above
+  static constexpr float settled = 1e-4f;            // of w_h, by which no force is felt to change
 
   Vec3<double> base_;     // middle of the fixed region
   Mat3<float> variance_;  // of that [m^2]

@@ -167,9 +167,9 @@ class ResolvedState {
     bool left_out = false;
     for (int round = 0;; ++round) {
       build(force, tool);
-      begin_loads(round == 0 ? share_that_goes_on<has_friction>(size(), last_, system_.directions(),
-                                                                system_.depth.data(), beside_)
-                             : 1.f);
+      begin_loads(round == 0
+                      ? share_that_goes_on<has_friction>(size(), last_, system_, beside_, moved_besides())
+                      : 1.f);
       left_out |= solve_inside(force, friction, tolerance);
       if constexpr (Strain::active)
         strain_.measure(system_, result_.load, pressure_.q.data(), pressure_.r.data(), regular_.response(),
@@ -203,6 +203,8 @@ class ResolvedState {
   [[nodiscard]] Vec3<double> acts_at(const Vec3<float>& foot) const noexcept {
     return (origin_ + (foot + strain_.shift()).template cast<S>()).template cast<double>();
   }
+  // What displaces the surface besides loads.
+  [[nodiscard]] Vec3<float> moved_besides() const noexcept { return regular_.moved() + sway_.moved(); }
   [[nodiscard]] PointMemory& point(std::size_t i) noexcept { return points_[touching_[inside_[i]].point]; }
   void build(const Force& force, const ToolPoints<S>& tool) noexcept {
     system_.clear();
@@ -277,8 +279,7 @@ class ResolvedState {
       strain_.add(system_, loads, u), cones_.twist.add(system_, loads, u);
   }
   void begin_loads(float share) noexcept {
-    begin_with<has_friction>(system_, last_, share, beside_, regular_.moved() + sway_.moved(), pressure_,
-                             result_);
+    begin_with<has_friction>(system_, last_, share, beside_, moved_besides(), pressure_, result_);
     if constexpr (has_friction)
       cones_.place(system_, pressure_.q.data(), origin_, gradient_.slope(), reaction_.passes(), result_);
   }
@@ -334,8 +335,7 @@ class ResolvedState {
     }
     if constexpr (!has_friction) reaction_.measure(system_, pressure_.q, gradient_);
     if constexpr (has_friction)
-      reaction_.measure(system_, cones_.axes(system_), pressure_.q, result_, beside_,
-                        regular_.moved() + sway_.moved());
+      reaction_.measure(system_, cones_.axes(system_), pressure_.q, result_, beside_, moved_besides());
     carried_.clear(origin_);
     for (std::size_t i = 0; i < size(); ++i) {
       const TouchingPoint& at = touching_[inside_[i]];

@@ -54,39 +54,41 @@ class SmoothSurface {
         if (v >= mesh_.vertices.size()) fail_at(where, "triangle corners must be vertices", "triangle", i, v);
     edges_ = mesh_edges(mesh_.triangles, where);
     tree_.emplace(mesh_);
-    const auto face = [&](std::uint32_t t) {
-      const auto& c = mesh_.triangles[t];
-      return area_vector(mesh_.vertices[c[0]], mesh_.vertices[c[1]], mesh_.vertices[c[2]]);
-    };
+    std::vector<Vec3d> face;
+    std::vector<double> area;
+    for (const auto& c : mesh_.triangles) {
+      face.push_back(area_vector(mesh_.vertices[c[0]], mesh_.vertices[c[1]], mesh_.vertices[c[2]]));
+      area.push_back(face.back().norm());
+    }
     double volume = 0;
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t)
-      volume += face(t).dot(mesh_.vertices[mesh_.triangles[t][0]] - mesh_.vertices[0]) / 3;
+      volume += face[t].dot(mesh_.vertices[mesh_.triangles[t][0]] - mesh_.vertices[0]) / 3;
     if (!(volume > 0))
       fail(where, "triangles must be counter-clockwise seen from outside: volume [m^3] must be > 0", volume);
     crease_.resize(edges_.size());
     for (std::size_t e = 0; e < edges_.size(); ++e) {
-      const Vec3d l = face(edges_[e].triangle[0]), r = face(edges_[e].triangle[1]);
-      crease_[e] = l.dot(r) < crease_cosine * l.norm() * r.norm();  // a triangle without area makes no crease
+      const std::uint32_t l = edges_[e].triangle[0], r = edges_[e].triangle[1];
+      // A triangle without area makes no crease.
+      crease_[e] = face[l].dot(face[r]) < crease_cosine * area[l] * area[r];
     }
     std::uint32_t fans = 0;
     const std::vector<std::uint32_t> fan = corner_fans(mesh_.triangles, edges_, crease_, fans);
     std::vector<double> largest(fans, 0);
-    for (std::size_t i = 0; i < fan.size(); ++i)
-      largest[fan[i]] = (std::max)(largest[fan[i]], face(static_cast<std::uint32_t>(i / 3)).norm());
+    for (std::size_t i = 0; i < fan.size(); ++i) largest[fan[i]] = (std::max)(largest[fan[i]], area[i / 3]);
     std::vector<Vec3d> normal(fans, Vec3d::Zero());
     for (std::uint32_t t = 0; t < mesh_.triangles.size(); ++t) {
-      const Vec3d n = unit_or(face(t), Vec3d(Vec3d::Zero()));
+      const Vec3d n = unit_or(face[t], Vec3d(Vec3d::Zero()));
       for (std::uint32_t c = 0; c < 3; ++c) {
         const Vec3d& p = mesh_.vertices[mesh_.triangles[t][c]];
         const Vec3d u = mesh_.vertices[mesh_.triangles[t][(c + 1) % 3]] - p,
                     v = mesh_.vertices[mesh_.triangles[t][(c + 2) % 3]] - p;
         const double angle = std::atan2(u.cross(v).norm(), u.dot(v));
-        normal[fan[3 * t + c]] += n * corner_weight(angle, face(t).norm(), largest[fan[3 * t + c]]);
+        normal[fan[3 * t + c]] += n * corner_weight(angle, area[t], largest[fan[3 * t + c]]);
       }
     }
     corner_normal_.resize(fan.size());
     for (std::size_t i = 0; i < fan.size(); ++i) {
-      const Vec3d own = unit_or(face(static_cast<std::uint32_t>(i / 3)), Vec3d(Vec3d::UnitZ()));
+      const Vec3d own = unit_or(face[i / 3], Vec3d(Vec3d::UnitZ()));
       corner_normal_[i] = unit_or(normal[fan[i]], own);
     }
   }

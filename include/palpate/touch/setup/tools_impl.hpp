@@ -30,13 +30,11 @@ inline constexpr std::size_t tool_vertices = 1500;    // chosen: chords of a cir
   const auto side = static_cast<std::uint32_t>(std::clamp(std::ceil(length / along), 1., 64.));
   MeshData<double> mesh;
   mesh.vertices.push_back({0, length / 2 + radius, 0});
-  std::uint32_t made = 0;
   const auto ring = [&](double angle, double shift) {
     for (std::uint32_t k = 0; k < around; ++k) {
       const double turn = 2 * std::numbers::pi * k / around, r = radius * std::cos(angle);
       mesh.vertices.push_back({r * std::sin(turn), shift + radius * std::sin(angle), r * std::cos(turn)});
     }
-    ++made;
   };
   for (std::uint32_t i = 1; i <= rings; ++i) ring(std::numbers::pi / 2 * (1 - double(i) / rings), length / 2);
   for (std::uint32_t i = 1; i < side; ++i) ring(0, length * (0.5 - double(i) / side));
@@ -46,7 +44,7 @@ inline constexpr std::size_t tool_vertices = 1500;    // chosen: chords of a cir
   for (std::uint32_t k = 0; k < around; ++k) {
     const std::uint32_t next = (k + 1) % around;
     mesh.triangles.push_back({0, 1 + k, 1 + next});
-    for (std::uint32_t i = 0; i + 1 < made; ++i) {
+    for (std::uint32_t i = 0; i + 2 < 2 * rings + side; ++i) {
       const std::uint32_t a = 1 + i * around + k, b = 1 + i * around + next;
       mesh.triangles.push_back({a, a + around, b + around});
       mesh.triangles.push_back({a, b + around, b});
