@@ -45,7 +45,7 @@ class RegularPart {
     weights_.resize(capacity);
     for (auto* list : {&w_, &w_step_}) list->resize(capacity);
     const std::size_t padded = AlignedList<float>::padded(4 * most_);
-    for (auto* list : {&load_, &u_, &u_of_all_, &u_beside_}) list->resize(padded);
+    for (auto* list : {&load_, &u_, &u_of_all_, &u_beside_, &u_sway_}) list->resize(padded);
     matrix_.resize(padded * 3 * most_);
   }
 
@@ -54,7 +54,7 @@ class RegularPart {
     size_ = 0;
     std::swap(used_, was_used_);
     used_.clear();
-    has_all_ = true;
+    has_all_ = true, sways_ = false;
     beside_.clear();
   }
   static constexpr std::uint32_t anywhere = ~0u;
@@ -163,7 +163,7 @@ class RegularPart {
   /// u += w along the directions of pressing, by loads q along them.
   void add(const PointSystem& system, const float* q, float* u) noexcept {
     if (is_left_out_) return;
-    gather([&](std::size_t i) { return Vec3<float>(q[i] * system.direction(i)); });
+    gather([&](std::size_t i) { return Vec3<float>(q[i] * system.direction(i)); }, u_);
     for (std::size_t i = 0; i < size_; ++i) u[i] += system.direction(i).dot(of(i));
   }
   /// No loads yet that response() and normal_at() tell of.
@@ -191,14 +191,32 @@ class RegularPart {
   }
   /// w at point i of that.
   [[nodiscard]] Vec3<float> beside(std::size_t i) const noexcept { return at(weights_[i], u_beside_); }
-  /// w along m at a further point, by the loads of response(), with others' loads if there are any.
+  /// Until clear() the body sways under loads q(i) p at the points, which are not those of response(): the
+  /// mean by q of what it does to the points, which is returned, and the nodes by what is not in it.
+  template <class Load>
+  Vec3<float> sway(const Load& q, const Vec3<float>& p) noexcept {
+    gather([&](std::size_t i) -> Vec3<float> { return q(i) * p; }, u_sway_);
+    float load = 0;
+    Vec3<float> sum = Vec3<float>::Zero();
+    for (std::size_t i = 0; i < size_; ++i) load += q(i), sum += q(i) * swayed(i);
+    const Vec3<float> mean = load > 0 ? sum / load : sum;
+    for (std::size_t i = 0; i < stride_; i += 4)
+      store(&u_sway_[i], Four(&u_sway_[i]) - Four(mean.x(), mean.y(), mean.z(), 0.f));
+    sways_ = true;
+    return mean;
+  }
+  /// Then what point i is displaced by beyond the mean.
+  [[nodiscard]] Vec3<float> swayed(std::size_t i) const noexcept { return at(weights_[i], u_sway_); }
+  /// w along m at a further point, by the loads of response(), with others' loads and sway if there are any.
   template <class Body>
   [[nodiscard]] float normal_at(const Body& body, const Vec3<double>& x, std::uint32_t& triangle,
                                 const Vec3<float>& m) noexcept {
     Weights weights;
     place(body.field(), x, triangle, weights, false);
-    const float w = m.dot(moved() + at(weights, u_of_all_));
-    return beside_.empty() ? w : w + m.dot(at(weights, u_beside_));
+    Vec3<float> w = moved() + at(weights, u_of_all_);
+    if (!beside_.empty()) w += at(weights, u_beside_);
+    if (sways_) w += at(weights, u_sway_);
+    return m.dot(w);
   }
 
  private:
@@ -278,9 +296,9 @@ class RegularPart {
     }
   }
 
-  // The nodes' displacements by load(i) at the points.
+  // The nodes' displacements u by load(i) at the points.
   template <class Load>
-  void gather(const Load& load) noexcept {
+  void gather(const Load& load, AlignedList<float>& u) noexcept {
     float* const f = load_.data();
     std::fill_n(f, stride_, 0.f);
     for (std::size_t i = 0; i < size_; ++i) {
@@ -288,11 +306,11 @@ class RegularPart {
       const Four P4(P.x(), P.y(), P.z(), 0.f);
       for (const Weight& w : weights_[i]) store(f + 4 * w.node, Four(f + 4 * w.node) + Four(w.value) * P4);
     }
-    multiply(u_);
+    multiply(u);
   }
   // Takes loads P into the response.
   void extend(const VectorList& P) noexcept {
-    gather([&](std::size_t i) { return P[i]; });
+    gather([&](std::size_t i) { return P[i]; }, u_);
     for (std::size_t i = 0; i < stride_; i += V::size())
       (V(&u_of_all_[i]) + V(&u_[i])).copy_to(&u_of_all_[i]);
     for (std::size_t i = 0; i < size_; ++i) w_step_.set(i, of(i));
@@ -329,14 +347,14 @@ class RegularPart {
   std::vector<Weights> weights_;        // of the points
   VectorList w_, w_step_;               // at the points: of all loads, of those that came last
   BoundedList<std::uint16_t> used_, was_used_;
-  AlignedList<float> load_, u_;             // of the nodes in use, four numbers each
-  AlignedList<float> u_of_all_, u_beside_;  // likewise, of response() and by other tools' loads
-  BoundedList<Four> beside_;                // loads of other tools, likewise
-  AlignedList<float> matrix_;               // by column
+  AlignedList<float> load_, u_;                      // of the nodes in use, four numbers each
+  AlignedList<float> u_of_all_, u_beside_, u_sway_;  // likewise: of response(), by others' loads, of sway()
+  BoundedList<Four> beside_;                         // loads of other tools, likewise
+  AlignedList<float> matrix_;                        // by column
   Mat3<float> common_ = Mat3<float>::Zero();
   std::size_t size_ = 0, stride_ = 0, nodes_ = 0;  // nodes_: in use by points
   std::uint32_t tick_ = 2;
-  bool changed_ = true, has_all_ = true, is_left_out_ = false;
+  bool changed_ = true, has_all_ = true, is_left_out_ = false, sways_ = false;
   Vec3<float> moved_ = Vec3<float>::Zero();
 };
 

@@ -55,7 +55,7 @@ class ResolvedState {
         carried_(capacity),
         strain_(body.nu()),
         cones_(body.nu(), capacity),
-        sway_(body),
+        sway_(body, capacity),
         gradient_(capacity) {
     const std::size_t padded = AlignedList<float>::padded(capacity);
     last_.resize(padded), pressure_.resize(padded), result_.resize(padded), reaction_.resize(padded);
@@ -168,10 +168,10 @@ class ResolvedState {
     for (int round = 0;; ++round) {
       build(force, tool);
       begin_loads(round == 0
-                      ? share_that_goes_on<has_friction>(size(), last_, system_, beside_, moved_besides())
+                      ? share_that_goes_on<has_friction>(size(), last_, system_, given(), regular_.moved())
                       : 1.f);
       left_out |= solve_inside(force, friction, tolerance);
-      if constexpr (Strain::active)
+      if constexpr (Strain::active)  // of second order, as sway is, of which it knows nothing
         strain_.measure(system_, result_.load, pressure_.q.data(), pressure_.r.data(), regular_.response(),
                         beside_, reaction_.held());
       const bool again = Strain::active && first && round == 0;  // the strain was not known
@@ -190,7 +190,6 @@ class ResolvedState {
   using Beside = std::conditional_t<(max_beside > 0), LoadsBeside<S>, NoLoadsBeside>;
   static constexpr float near = 0.05f;   // of the depth; with less gap points are solved for at once
   static constexpr int most_rounds = 3;  // in which points may come in within a tick
-  using V = VectorList::V;
 
   [[nodiscard]] std::size_t size() const noexcept { return inside_.size(); }
   void forget() noexcept {
@@ -203,8 +202,7 @@ class ResolvedState {
   [[nodiscard]] Vec3<double> acts_at(const Vec3<float>& foot) const noexcept {
     return (origin_ + (foot + strain_.shift()).template cast<S>()).template cast<double>();
   }
-  // What displaces the surface besides loads.
-  [[nodiscard]] Vec3<float> moved_besides() const noexcept { return regular_.moved() + sway_.moved(); }
+  [[nodiscard]] GivenDisplacements<Beside, Sway> given() const noexcept { return {beside_, sway_}; }
   [[nodiscard]] PointMemory& point(std::size_t i) noexcept { return points_[touching_[inside_[i]].point]; }
   void build(const Force& force, const ToolPoints<S>& tool) noexcept {
     system_.clear();
@@ -231,6 +229,7 @@ class ResolvedState {
     if constexpr (RegularPart::active) regular_.build();
     if (regular_.is_left_out()) system_.move(regular_.moved());
     if constexpr (Beside::active) beside_.move_points(system_, regular_);
+    sway_.displace(system_, last_, regular_);
   }
   Remainder iterate(const auto& friction, float tolerance, int iterations) noexcept {
     if constexpr (!has_friction)
@@ -279,7 +278,7 @@ class ResolvedState {
       strain_.add(system_, loads, u), cones_.twist.add(system_, loads, u);
   }
   void begin_loads(float share) noexcept {
-    begin_with<has_friction>(system_, last_, share, beside_, moved_besides(), pressure_, result_);
+    begin_with<has_friction>(system_, last_, share, given(), regular_.moved(), pressure_, result_);
     if constexpr (has_friction)
       cones_.place(system_, pressure_.q.data(), origin_, gradient_.slope(), reaction_.passes(), result_);
   }
@@ -328,14 +327,14 @@ class ResolvedState {
   void finish(const ToolPoints<S>& tool, [[maybe_unused]] float moved) noexcept {
     const Vec3<float> v = shift_.v();
     if constexpr (RegularPart::active) {
-      gradient_.measure(system_, pressure_.q.data(), regular_.response(), v, beside_, touching_, tool);
+      gradient_.measure(system_, pressure_.q.data(), regular_.response(), v, given(), touching_, tool);
       regular_.keep(pressure_.q.data());
       if (!regular_.is_left_out())
         shift_.measure(system_, pressure_.q.data(), regular_.response(), gradient_.arc(), origin_, moved);
     }
     if constexpr (!has_friction) reaction_.measure(system_, pressure_.q, gradient_);
     if constexpr (has_friction)
-      reaction_.measure(system_, cones_.axes(system_), pressure_.q, result_, beside_, moved_besides());
+      reaction_.measure(system_, cones_.axes(system_), pressure_.q, result_, given(), regular_.moved());
     carried_.clear(origin_);
     for (std::size_t i = 0; i < size(); ++i) {
       const TouchingPoint& at = touching_[inside_[i]];
@@ -362,7 +361,7 @@ class ResolvedState {
     if constexpr (has_friction) {
       carried_.build();
       if (!regular_.is_left_out())
-        sway_.measure(system_, pressure_.q.data(), result_.load, regular_, beside_, acts_at({0, 0, 0}));
+        sway_.measure(system_, pressure_.q.data(), result_.load, regular_, given(), acts_at({0, 0, 0}));
       slides_ = strength_.remember(reaction_.total(), reaction_.sticking(), system_, pressure_, result_);
     }
   }
