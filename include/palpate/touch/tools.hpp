@@ -13,7 +13,8 @@
 /// | `tool_mesh(mesh)`          | the mesh's own              | a tenth of the surface                |
 ///
 /// A capsule's half then has 256 points, as many as Touch takes beneath the surface, a ball's 200. An end's
-/// contact area is that where it is in by a quarter of its radius: it has 10 points at least.
+/// contact area is that where it is in by a quarter of its radius: it has 10 points at least. Where nothing
+/// is told Touch takes A_0 as 1/13 of the body's surface at most: half of that then has 256 points.
 
 #include <palpate/core/error.hpp>
 #include <palpate/core/pose.hpp>
@@ -33,6 +34,7 @@ struct MeshTool {
   MeshData<double> mesh;
   double spacing = 0;                                  ///< of the points [m], > 0
   Vec3<double> centre_of_mass = Vec3<double>::Zero();  ///< [m]
+  double finest = 0;  ///< how near Touch may put them on a small body [m], at most `spacing`; 0: no nearer
 };
 
 /// What a tool made here may be told.

@@ -74,6 +74,9 @@ struct TouchParts<MeshTool> {
   Object object;
   Force force;
   Shape shape;
+
+ private:
+  TouchParts(const ElasticBody& body, const MeshTool& mesh, double spacing);
 };
 
 }  // namespace detail

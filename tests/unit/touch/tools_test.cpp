@@ -38,6 +38,9 @@ TEST_CASE("tools: closed meshes of the size asked for, with points as fine as th
   CHECK_RELATIVE(told.spacing * told.spacing, 1e-4 / 40, 1e-12);
   CHECK(told.centre_of_mass == V(0, 1, 0));
   CHECK(fine.spacing == 1e-3);
+  // Touch may take points down to 1,500 in all where nothing is told.
+  CHECK_RELATIVE(scanned.finest * scanned.finest, 2.2e-3 / 1500, 1e-12);
+  CHECK((told.finest == 0 && fine.finest == 0));
   // A capsule has 512 points, but an end in by a quarter of its radius 10 to 40.
   const double end = pi / 4 * 0.005 * 0.005;
   CHECK_RELATIVE(rod.spacing * rod.spacing, 2 * pi * 0.005 * 0.03 / 512, 1e-12);

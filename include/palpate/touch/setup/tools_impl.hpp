@@ -61,9 +61,10 @@ inline constexpr std::size_t tool_vertices = 1500;    // chosen: chords of a cir
   const TriangleMesh<double> mesh(std::move(data));
   MeshTool tool{mesh.data(), params.spacing, params.centre_of_mass};
   if (tool.spacing > 0) return tool;
-  double area = params.contact_area > 0 ? params.contact_area : nominal;
-  if (!(area > 0)) area = 0.1 * mesh.area();  // chosen
-  tool.spacing = std::sqrt((std::max)(area / points_on_contact_area, mesh.area() / most_points));
+  const double finest = std::sqrt(mesh.area() / most_points);
+  double area = params.contact_area;
+  if (!(area > 0)) area = nominal > 0 ? nominal : 0.1 * mesh.area(), tool.finest = finest;  // 0.1: chosen
+  tool.spacing = (std::max)(std::sqrt(area / points_on_contact_area), finest);
   return tool;
 }
 

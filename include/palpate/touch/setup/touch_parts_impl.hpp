@@ -70,11 +70,22 @@ PALPATE_COMPILED_INLINE TouchParts<PointBall>::TouchParts(const ElasticBody& bod
   fit.depth = ball_depth * ball.radius;
 }
 
+/// Of a tool's points on that body: half of its surface has as many as are taken beneath it.
+[[nodiscard]] inline double point_spacing(const ElasticBody& body, const MeshTool& tool) {
+  if (!(tool.finest > 0)) return tool.spacing;
+  constexpr double most = 2 * TouchParts<MeshTool>::Contacts::max_points;
+  return (std::min)(tool.spacing, (std::max)(tool.finest, std::sqrt(body.mesh().area() / most)));
+}
+
 PALPATE_COMPILED_INLINE TouchParts<MeshTool>::TouchParts(const ElasticBody& body, const MeshTool& mesh)
-    : tool(contact_samples(TriangleMesh<double>(mesh.mesh), mesh.spacing),
-           {.contact_area = mesh.spacing * mesh.spacing, .centre_of_mass = mesh.centre_of_mass}),
+    : TouchParts(body, mesh, point_spacing(body, mesh)) {}
+
+PALPATE_COMPILED_INLINE TouchParts<MeshTool>::TouchParts(const ElasticBody& body, const MeshTool& mesh,
+                                                         double spacing)
+    : tool(contact_samples(TriangleMesh<double>(mesh.mesh), spacing),
+           {.contact_area = spacing * spacing, .centre_of_mass = mesh.centre_of_mass}),
       object(SharedSurface(body.surface()),
-             {.spacing = sample_spacing(body.surface()->lower(), body.surface()->upper(), mesh.spacing)}),
+             {.spacing = sample_spacing(body.surface()->lower(), body.surface()->upper(), spacing)}),
       force({.compliance = ResponseCompliance(body.field())}),
       shape(body.field(), body.mesh().data()) {}
 
