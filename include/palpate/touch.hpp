@@ -117,6 +117,7 @@ class Touch {
   }
 
   [[nodiscard]] const ElasticBody& body() const noexcept { return body_; }
+  /// As it was made; of a MeshTool the spacing that its points have on this body.
   [[nodiscard]] const Tool& tool() const noexcept { return tool_; }
   [[nodiscard]] const Solver& solver() const noexcept { return solver_; }
   /// A `point_ball`'s force law F(D) at x, a position near the surface [m].
@@ -144,7 +145,9 @@ class Touch {
                  .force = std::move(parts.force),
                  .friction = std::move(friction),
                  .contacts = parts.contacts,
-                 .deformation = std::move(parts.shape)}) {}
+                 .deformation = std::move(parts.shape)}) {
+    if constexpr (is_resolved) tool_.spacing = parts.spacing;
+  }
 
   void hand_over() noexcept {
     Drawn& drawn = handed_over_.back();

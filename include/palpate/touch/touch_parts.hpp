@@ -68,15 +68,13 @@ struct TouchParts<MeshTool> {
 
   TouchParts(const ElasticBody& body, const MeshTool& mesh);
 
+  double spacing;  ///< of the tool's points [m]
   ToolPoints<double> tool;
   Contacts contacts{};
   Absent<0> fit;
   Object object;
   Force force;
   Shape shape;
-
- private:
-  TouchParts(const ElasticBody& body, const MeshTool& mesh, double spacing);
 };
 
 }  // namespace detail

@@ -213,6 +213,7 @@ TEST_CASE("touch, a ball larger than the body: points as near as the body asks f
   MESSAGE(felt.wrench.force.transpose(), " N, torque ", felt.wrench.torque.z(), " N m");
   CHECK_RELATIVE(-felt.wrench.force.x(), 11.89, 0.08);   // measured: 6.8 %, model (docs/resolved.md)
   CHECK_RELATIVE(-felt.wrench.torque.z(), 0.613, 0.05);  // measured: 2.6 %
+  CHECK_RELATIVE(touch.tool().spacing, large.finest, 1e-12);
   // Who tells the spacing gets it.
   Touch told(body, ball(0.04, {.spacing = large.spacing}));
   CHECK(told.tick(at(V(0, 0.054, 0)), 1e-3).points.size() < 10);

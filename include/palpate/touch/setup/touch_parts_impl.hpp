@@ -78,11 +78,8 @@ PALPATE_COMPILED_INLINE TouchParts<PointBall>::TouchParts(const ElasticBody& bod
 }
 
 PALPATE_COMPILED_INLINE TouchParts<MeshTool>::TouchParts(const ElasticBody& body, const MeshTool& mesh)
-    : TouchParts(body, mesh, point_spacing(body, mesh)) {}
-
-PALPATE_COMPILED_INLINE TouchParts<MeshTool>::TouchParts(const ElasticBody& body, const MeshTool& mesh,
-                                                         double spacing)
-    : tool(contact_samples(TriangleMesh<double>(mesh.mesh), spacing),
+    : spacing(point_spacing(body, mesh)),
+      tool(contact_samples(TriangleMesh<double>(mesh.mesh), spacing),
            {.contact_area = spacing * spacing, .centre_of_mass = mesh.centre_of_mass}),
       object(SharedSurface(body.surface()),
              {.spacing = sample_spacing(body.surface()->lower(), body.surface()->upper(), spacing)}),
