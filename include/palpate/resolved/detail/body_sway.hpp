@@ -112,12 +112,9 @@ class BodySway {
     }
     for (std::size_t i = system.size(); i < system.stride(); ++i) sway_.set(i, Vec3<float>::Zero());
   }
-  /// Of points i .. on [m]; and what the depths are less by.
+  /// Of points i .. on [m].
   [[nodiscard]] PALPATE_INLINE SimdVec3<V> load(std::size_t i) const noexcept {
     return sways_ ? sway_.load(i) : SimdVec3<V>{};
-  }
-  [[nodiscard]] PALPATE_INLINE SimdVec3<V> beyond(std::size_t i) const noexcept {
-    return sways_ ? sway_.load(i) - each<V>(mean_) : SimdVec3<V>{};
   }
   /// Whether another tick at the same pose would find the same.
   [[nodiscard]] bool has_settled() const noexcept { return has_settled_; }
@@ -143,13 +140,11 @@ struct NoBodySway {
   static void measure(const auto&...) noexcept {}
   static void displace(const auto&...) noexcept {}
   [[nodiscard]] PALPATE_INLINE static SimdVec3<V> load(std::size_t) noexcept { return {}; }
-  [[nodiscard]] PALPATE_INLINE static SimdVec3<V> beyond(std::size_t) noexcept { return {}; }
   [[nodiscard]] static constexpr bool has_settled() noexcept { return true; }
   [[nodiscard]] static Vec3<float> pull() noexcept { return Vec3<float>::Zero(); }
 };
 
-/// Displacements that are not by a tick's own loads: by others' and by sway. Of points i .. on [m]; and what
-/// the depths are less by.
+/// Displacements that are not by a tick's own loads: by others' and by sway. Of points i .. on [m].
 template <class Others, class Sway>
 struct GivenDisplacements {
   using V = VectorList::V;
@@ -158,9 +153,6 @@ struct GivenDisplacements {
 
   [[nodiscard]] PALPATE_INLINE SimdVec3<V> load(std::size_t i) const noexcept {
     return others.load(i) + sway.load(i);
-  }
-  [[nodiscard]] PALPATE_INLINE SimdVec3<V> beyond(std::size_t i) const noexcept {
-    return others.beyond(i) + sway.beyond(i);
   }
 };
 

@@ -48,10 +48,10 @@ class Reaction<true> {
   using V = VectorList::V;
 
   void resize(std::size_t size) { anchor_.resize(size), sticks_.resize(size); }
-  /// Of the loads `result` on cones about `axes`, normal ones q. `beside`: displacements by others' loads;
-  /// `moved`: what the solve has left out of all displacements.
+  /// Of the loads `result` on cones about `axes`, normal ones q. `given`: displacements by others' loads and
+  /// by sway; `moved`: what the solve has left out of all displacements.
   void measure(const PointSystem& system, const VectorList& axes, const AlignedList<float>& q,
-               const FrictionLists& result, const auto& beside, const Vec3<float>& moved) noexcept {
+               const FrictionLists& result, const auto& given, const Vec3<float>& moved) noexcept {
     const V zero(0.f), one(1.f), tiny((std::numeric_limits<float>::min)());
     const SimdVec3<V> all = each<V>(moved);
     V total{}, sticking{}, rubbed{}, sizes{};
@@ -64,7 +64,7 @@ class Reaction<true> {
       const auto sticks = t2 < V(slips_from) * limit2, holds = sticks && V(&result.anchored[i]) > zero;
       const SimdVec3<V> a = result.anchor.load(i),
                         kept{select(holds, a.x, u.x), select(holds, a.y, u.y), select(holds, a.z, u.z)};
-      anchor_.store(i, across(system.directions().load(i), beside.load(i) + kept + all));
+      anchor_.store(i, across(system.directions().load(i), given.load(i) + kept + all));
       select(sticks, one, zero).copy_to(&sticks_[i]);
       total += qi, sticking += select(sticks, qi, zero);
       rubbed += qi * select(sticks, t2 / (max)(limit2, tiny), one);

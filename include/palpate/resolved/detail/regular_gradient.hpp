@@ -44,7 +44,7 @@ class RegularGradient {
   }
 
   /// After a solve with normal loads q and displacements w by them, of which points are put over v already;
-  /// `given`: by others' loads.
+  /// `given`: by others' loads and by sway.
   template <Real S>
   void measure(const PointSystem& system, const float* q, const VectorList& w, const Vec3<float>& v,
                const auto& given, const BoundedList<TouchingPoint>& touching,

@@ -18,7 +18,7 @@ namespace palpate::detail {
 /// The share s by which loads and displacements go on, P + s dP and u + s du, so that the conditions of
 /// contact are met best: least squares over the loaded points. Each, pressing along m, is to be displaced by
 /// its depth along it; where it has an anchor a, it sticks to it, or slips with t + s dt along a - u - s du.
-/// `given`: displacements by others' loads; `moved`: what the surface is displaced by besides.
+/// `given`: displacements by others' loads and by sway; `moved`: what the surface is displaced by besides.
 template <bool has_friction, class Given>
 [[nodiscard]] float share_that_goes_on(std::size_t n, const MemoryLists& last, const PointSystem& system,
                                        const Given& given, const Vec3<float>& moved) noexcept {
@@ -49,8 +49,8 @@ template <bool has_friction, class Given>
   return whole > 0 ? clamp(reduce(meets) / whole, -most, most) : 0.f;
 }
 
-/// The loads P + share dP; with friction also the anchors, less what the surface is displaced by besides: by
-/// others' loads, `given`, and by `moved`, as above.
+/// The loads P + share dP; with friction also the anchors, less what the surface is displaced by besides:
+/// `given` and `moved`, as above.
 template <bool has_friction, class Given>
 void begin_with(const PointSystem& system, const MemoryLists& last, float share, const Given& given,
                 const Vec3<float>& moved, PressureLists& pressure, auto& result) noexcept {
