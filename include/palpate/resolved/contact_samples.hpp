@@ -4,6 +4,7 @@
 /// @file Points of a rigid tool at which contact is resolved: even, one per cell, drawn in from sharp edges.
 /// Set-up only.
 
+#include <palpate/core/error.hpp>
 #include <palpate/detection/resample.hpp>
 #include <palpate/geometry/triangle_mesh.hpp>
 

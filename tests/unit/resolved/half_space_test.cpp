@@ -222,7 +222,8 @@ TEST_CASE("two balls on one tool feel each other's dent as point forces far apar
 
 TEST_CASE("around a box's edge the force is continuous, and does not depend on the way there") {
   // Normals turn by 90 degrees and walls of the ball come in. Steps of some 2 um; stiffness 1.5 F/d.
-  // Measured: 3.4 times that; a jump would be 200 times.
+  // Measured: 0.9 times that; 3.4 where points beside the edge press on the side that is closest; a jump would
+  // be 200 times.
   constexpr double r = 0.006, d = 6e-4, ball_middle = r - d;
   Solver<> solver({.object = Box<double>({.half = V(0.03, 0.025, 0.02)}),
                    .tool = ToolPoints<double>(
@@ -236,7 +237,7 @@ TEST_CASE("around a box's edge the force is continuous, and does not depend on t
     const double phi = std::numbers::pi / 2 * i / ticks, s = std::sin(phi), c = std::cos(phi);
     const V x = V(0.027, 0.022, 0) + V(s, c, 0) * (0.003 * (std::max)(s, c) + ball_middle);
     const V force = solver.tick(at(x.x(), x.y())).wrench.force;
-    if (i > 0) CHECK((force - before).norm() <= 5 * 1.5 * force.norm() / d * (x - x_before).norm());
+    if (i > 0) CHECK((force - before).norm() <= 2 * 1.5 * force.norm() / d * (x - x_before).norm());
     if (i % 100 == 0) {
       auto fresh = none;
       CHECK((solver.evaluate(at(x.x(), x.y()), 1e-3, fresh).wrench.force - force).norm() <=
@@ -260,9 +261,9 @@ TEST_CASE("a ball that slides over a box's edge, R/4 deep, is not swung from tic
     if (i > 1) largest = (std::max)(largest, (force - 2 * last + before).norm());
     before = last, last = force, peak = (std::max)(peak, force.norm());
   }
-  // A fifteenth as points come and go; a quarter, back and forth, where each point's own
-  // normal is in its cone's axis.
-  CHECK(largest <= 0.1 * peak);
+  // Measured: 0.4 %. A fifteenth where points beside the edge press on the side that is closest; a quarter,
+  // back and forth, where each point's own normal is in its cone's axis.
+  CHECK(largest <= 0.02 * peak);
 }
 
 TEST_CASE("a tick takes no heap, the same poses give the same bits, and bad poses no force") {

@@ -45,7 +45,14 @@ class PointSystem {
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
-  [[nodiscard]] float deepest() const noexcept { return deepest_; }  ///< of what was given to touch() [m]
+  /// Of what was given to touch(): the deepest [m], depth by area [m^3], mean of normals by that.
+  [[nodiscard]] float deepest() const noexcept { return deepest_; }
+  [[nodiscard]] float volume() const noexcept { return volume_; }
+  [[nodiscard]] Vec3<float> mean_normal() const noexcept {
+    Vec3<float> sum = Vec3<float>::Zero();
+    for (const Group& group : groups_) sum += group.n;
+    return sum / volume_;
+  }
   /// Before a tick's first touch().
   void begin_tick() noexcept {
     groups_.clear();
@@ -75,11 +82,7 @@ class PointSystem {
   [[nodiscard]] const float* areas() const noexcept { return area_.data(); }
   [[nodiscard]] std::uint32_t groups() const noexcept { return static_cast<std::uint32_t>(groups_.size()); }
   /// Whether normals differ by a milliradian at most, their mean's length by 1e-6, ten roundings, from 1.
-  [[nodiscard]] bool is_flat() const noexcept {
-    Vec3<float> sum = Vec3<float>::Zero();
-    for (const Group& group : groups_) sum += group.n;
-    return sum.norm() >= (1 - 1e-6f) * volume_;
-  }
+  [[nodiscard]] bool is_flat() const noexcept { return mean_normal().norm() >= 1 - 1e-6f; }
   /// By how much directions turn with N, the sum of weighted normals that they are along: 1/|N| [1/m^3], less
   /// where the surface's own normal counts.
   [[nodiscard]] PALPATE_INLINE V turns(std::size_t i) const noexcept {

@@ -18,6 +18,7 @@
 #include <palpate/resolved/detail/friction_problem.hpp>
 #include <palpate/resolved/detail/loads_beside.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
+#include <palpate/resolved/detail/points_beside_edge.hpp>
 #include <palpate/resolved/detail/reaction.hpp>
 #include <palpate/resolved/detail/regular_gradient.hpp>
 #include <palpate/resolved/detail/static_strength.hpp>
@@ -46,6 +47,7 @@ class ResolvedState {
   ResolvedState(const Compliance& body, std::size_t tool_points, std::size_t capacity)
       : points_(tool_points),
         touching_(capacity),
+        beside_edge_(capacity),
         inside_(capacity),
         contacts_(capacity),
         system_(capacity, static_cast<float>(1 - 2 * body.nu()), has_friction),
@@ -95,7 +97,6 @@ class ResolvedState {
   [[nodiscard]] Status left_out() const noexcept {
     return beside_.status() | (has_room_ && regular_.has_all() ? Status::ok : Status::point_overflow);
   }
-
   /// Area that touches [m^2].
   [[nodiscard]] float area(const ToolPoints<S>& tool) noexcept {
     unloaded_.take(touching_, points_);
@@ -103,12 +104,11 @@ class ResolvedState {
       return rounded_rim_pressure(tool, touching_[inside_[i]], system_.b());
     });
   }
-
   void begin_tick(const ContactSurface auto& object, const Force& force, const ToolPoints<S>& tool,
                   const Pose<S>& X) noexcept {
     per_load_ = static_cast<S>(4 * std::numbers::pi * force.shear_modulus());
     beside_.begin_tick(object, force.compliance(), tool, pose_, X, has_contact(), per_load_, regular_);
-    ++tick_, touching_.clear(), system_.begin_tick(), has_room_ = true;
+    ++tick_, touching_.clear(), beside_edge_.clear(), system_.begin_tick(), has_room_ = true;
   }
   /// Where the tool at X is over the undeformed surface, which others' loads move.
   [[nodiscard]] Pose<S> over(const Pose<S>& X) const noexcept { return beside_.over(X); }
@@ -116,7 +116,10 @@ class ResolvedState {
   [[nodiscard]] S shift() const noexcept { return static_cast<S>(shift_.most()); }
   [[nodiscard]] bool has_settled() const noexcept { return shift_.has_settled() && sway_.has_settled(); }
   /// True where nothing touches and the body may have come back in part: look again, `tries` from 1 on.
-  [[nodiscard]] bool look_again(int tries) noexcept { return touching_.empty() && shift_.come_back(tries); }
+  [[nodiscard]] bool look_again(int tries) noexcept {
+    if (touching_.empty()) beside_edge_.clear();
+    return touching_.empty() && shift_.come_back(tries);
+  }
   /// A leaf of the tool's points over the surface as it lay before the body bent and friction carried it.
   [[nodiscard]] PointBatch<S> before(const PointBatch<S>& x) const noexcept {
     return carried_.before(shift_.before(x));
@@ -126,25 +129,26 @@ class ResolvedState {
   /// `rotation`: of the tool; the first is at `first` where it is. Returns how deep [m].
   S touch(const ToolSurface<S>& surface, std::uint32_t begin, const Mat3<float>& rotation,
           const Vec3<S>& first, const PointBatch<S>& x, const PenetrationBatch<S>& in) noexcept {
-    if (touching_.empty()) origin_ = Vec3<S>(x.x[0], x.y[0], x.z[0]);
+    if (touching_.empty() && beside_edge_.empty()) origin_ = Vec3<S>(x.x[0], x.y[0], x.z[0]);
     const TouchingLeaf leaf = surface.find(begin, rotation, x, in, origin_);
-    if (!(leaf.volume > 0)) return S(0);
     const float shifted = shift_.share_at(first);
+    beside_edge_.add(leaf, begin, shifted);
+    if (!(leaf.volume > 0)) return S(0);
     if (!touching_.full()) system_.touch(leaf.deepest, leaf.volume, leaf.volume_x, leaf.volume_m);
     S deepest = S(0);
     for (std::uint32_t k = 0; k < batch_size; ++k) {
       if (!(leaf.depth[k] > 0)) continue;
       deepest = (std::max)(deepest, in.depth[k]);
-      has_room_ = !touching_.full();
-      if (!has_room_) continue;
+      if (has_room_ = !touching_.full(); !has_room_) continue;
       touching_.push_back(leaf.point(k, begin + k, system_.groups() - 1, shifted));
-      PointMemory& p = points_[begin + k];
-      if (p.tick + 1 != tick_) p = {};
-      p.tick = tick_;
+      points_[begin + k].touch(tick_);
     }
     return deepest;
   }
-
+  /// After all touch().
+  void touch_beside_edges(const ContactSurface auto& object, const ToolPoints<S>& tool) noexcept {
+    has_room_ &= beside_edge_.press(object, tool, origin_, tick_, system_, touching_, points_);
+  }
   /// Solves for the loads with the tool at X.
   void solve(const Force& force, const auto& friction, const ToolPoints<S>& tool, const Pose<S>& X) noexcept {
     const bool first = contacts_.empty();
@@ -282,7 +286,6 @@ class ResolvedState {
     if constexpr (has_friction)
       cones_.place(system_, pressure_.q.data(), origin_, gradient_.slope(), reaction_.passes(), result_);
   }
-
   /// Takes in points that the surface has not given way to, or holds them where they are: w was `left_out` in
   /// this tick. False where none came in, and not `again`.
   bool take_in(const Force& force, const ToolPoints<S>& tool, float tolerance, bool again,
@@ -323,7 +326,6 @@ class ResolvedState {
     std::sort(inside_.begin(), inside_.end());
     return true;
   }
-
   void finish(const ToolPoints<S>& tool, [[maybe_unused]] float moved) noexcept {
     const Vec3<float> v = shift_.v();
     if constexpr (RegularPart::active) {
@@ -342,12 +344,10 @@ class ResolvedState {
       const float q = pressure_.q[i];
       p.go_on(result_.load[i], result_.u[i]);
       p.sunk = pressure_.r[i] + at.depth;
-      p.loaded = q > 0;
-      p.sticks = false;
+      p.loaded = q > 0, p.sticks = false;
       if (!p.loaded) continue;
       if constexpr (has_friction) {
-        p.sticks = reaction_.sticks(i);
-        p.anchor = reaction_.anchor(i);
+        p.sticks = reaction_.sticks(i), p.anchor = reaction_.anchor(i);
         const Vec3<float> m = system_.direction(i);
         carried_.add(at.point / static_cast<std::uint32_t>(batch_size), at.x, q,
                      beside_.own(shift_.own(p.anchor, m, at.shifted), m), m,
@@ -368,6 +368,7 @@ class ResolvedState {
 
   std::vector<PointMemory> points_;
   BoundedList<TouchingPoint> touching_;
+  PointsBesideEdge<S> beside_edge_;
   BoundedList<std::uint32_t> inside_;  // of touching_, rising: those that are solved for
   BoundedList<PointContact<S>> contacts_;
   PointSystem system_;

@@ -26,7 +26,9 @@ struct TouchingLeaf {
   std::array<Each, 3> m;        ///< the surface's inward normal
   std::array<Each, 3> outward;  ///< the tool's normal; m where it is not known
   std::array<Each, 3> x;        ///< object coordinates, from the origin given [m]
+  alignas(64) Each aside;       ///< how far those are beneath that do not press for they face away; else 0
 
+  bool has_aside;                  ///< any
   float deepest;                   ///< [m]
   float volume;                    ///< sum of depth by area [m^3]
   Vec3<float> volume_x, volume_m;  ///< sums of x and of m by these
@@ -58,16 +60,13 @@ class ToolSurface {
     }
   }
 
-  /// Points from `begin` on at `x`, as deep in the body as `in` says; `rotation`: of the tool. What faces
-  /// away from the body cannot press on it; a wall fades out over some ten degrees, and is out before it is
-  /// upright: rounding would bring it in and out.
+  /// Points from `begin` on at `x`, as deep in the body as `in` says; `rotation`: of the tool.
   [[nodiscard]] TouchingLeaf find(std::size_t begin, const Mat3<float>& rotation, const PointBatch<S>& x,
                                   const PenetrationBatch<S>& in, const Vec3<S>& origin) const noexcept {
     TouchingLeaf leaf;
-    constexpr float upright = 1e-4f, whole = 0.2f;
     using Limits = std::numeric_limits<float>;
     const V zero(0.f), tiny((Limits::min)()), most((Limits::max)());
-    V deepest = zero, volume = zero;
+    V deepest = zero, volume = zero, most_aside = zero;
     SimdVec3<V> volume_x{}, volume_m{};
     for (std::size_t k = 0; k < batch_size; k += V::size()) {
       using Wide = Simd<S, static_cast<int>(V::size())>;
@@ -87,20 +86,24 @@ class ToolSurface {
                           select(has_normal, per_length * gradient.z, zero)};
       V depth = select(has_normal, (max)(numbers(in.depth, S(0)), zero), zero);
       SimdVec3<V> outward = m;
+      V aside = zero;
       if (has_normals_) {
         const SimdVec3<V> n = normal_.load(begin + k);
         const auto row = [&](Eigen::Index r) PALPATE_INLINE_LAMBDA {
           return V(rotation(r, 0)) * n.x + V(rotation(r, 1)) * n.y + V(rotation(r, 2)) * n.z;
         };
         outward = {row(0), row(1), row(2)};
-        depth *= clamp(V(1 / whole) * (dot(outward, m) - upright), 0.f, 1.f);
+        const V facing = facing_share(dot(outward, m));
+        aside = select(facing > zero, zero, depth);
+        depth *= facing;
       }
-      deepest = (max)(deepest, depth);
+      deepest = (max)(deepest, depth), most_aside = (max)(most_aside, aside);
       const V weight = depth * V(&area_[begin + k]);
       volume += weight, volume_x += weight * position, volume_m += weight * m;
-      depth.copy_to(&leaf.depth[k]);
+      depth.copy_to(&leaf.depth[k]), aside.copy_to(&leaf.aside[k]);
       store(position, leaf.x), store(m, leaf.m), store(outward, leaf.outward);
     }
+    leaf.has_aside = reduce_max(most_aside) > 0;
     leaf.deepest = reduce_max(deepest), leaf.volume = reduce(volume);
     leaf.volume_x = sum_of(volume_x), leaf.volume_m = sum_of(volume_m);
     return leaf;

@@ -4,6 +4,7 @@
 /// @file What a tick knows of the tool's points.
 
 #include <palpate/core/aligned_list.hpp>
+#include <palpate/core/simd_math.hpp>
 #include <palpate/core/vector.hpp>
 #include <palpate/resolved/detail/bounded_list.hpp>
 #include <palpate/resolved/detail/vector_list.hpp>
@@ -28,6 +29,11 @@ struct PointMemory {
   Vec3<float> load_step = load, u_step = u;  ///< what the tick changed
   Vec3<float> anchor = Vec3<float>::Zero();  ///< where it holds the surface [m]
 
+  /// Is beneath the surface in tick `now`.
+  void touch(std::uint32_t now) noexcept {
+    if (tick + 1 != now) *this = {};
+    tick = now;
+  }
   /// After a tick, before `loaded` is this tick's.
   void go_on(const Vec3<float>& new_load, const Vec3<float>& new_u) noexcept {
     load_step = loaded ? Vec3<float>(new_load - load) : Vec3<float>::Zero();
@@ -64,6 +70,15 @@ struct TouchingPoint {
   std::uint32_t group;  ///< of points that lie side by side (PointSystem::touch)
   float shifted = 0;    ///< of the body's shift, by which x is where the body was not bent
 };
+
+/// With how much of its depth a point presses, from the product of the tool's normal and the surface's inward
+/// one. What faces away from the body cannot press on it; a wall fades out over some ten degrees, and is out
+/// before it is upright: rounding would bring it in and out.
+template <SimdOrReal W>
+[[nodiscard]] PALPATE_INLINE W facing_share(const W& product) noexcept {
+  constexpr float upright = 1e-4f, whole = 0.2f;
+  return clamp(W(1 / whole) * (product - W(upright)), 0.f, 1.f);
+}
 
 /// Of points beneath the surface [m]; never 0, though squares of depths may be no floats.
 [[nodiscard]] inline float norm_of_depths(const BoundedList<TouchingPoint>& touching) noexcept {
