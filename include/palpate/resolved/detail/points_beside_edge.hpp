@@ -16,6 +16,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace palpate::detail {
@@ -36,7 +37,9 @@ namespace palpate::detail {
 ///
 /// b: how far x is from the closest surface, A: its cell. w is 0 where n and o are opposite, as beyond the
 /// middle of a thin wall, and where the surface turns by less than 18 degrees from n to n_y, or M. s: a tool
-/// that comes in through a side has at first no points that are nearer to the top.
+/// that comes in through a side has at first no points that are nearer to the top. Chosen so that a ball's
+/// force is smooth round an edge and over it (tests/unit/resolved/half_space_test.cpp; with steeper ramps, or
+/// z nearer by, it swings in a cycle of two ticks), with the cases at edges of docs/resolved.md in sight.
 template <Real S>
 class PointsBesideEdge {
  public:
@@ -54,10 +57,10 @@ class PointsBesideEdge {
   /// After all points have touched: puts those that press on another face, which are in `touching` or were
   /// added, on that, in `touching` and in the groups of `system`. Positions are relative to `origin` [m].
   /// Those that were not in `touching` touch in tick `now`, too. Returns whether there was room for all.
+  /// Precondition: `touching` has a point.
   bool press(const ContactSurface auto& object, const ToolPoints<S>& tool, const Vec3<S>& origin,
              std::uint32_t now, PointSystem& system, BoundedList<TouchingPoint>& touching,
              std::vector<PointMemory>& memory) noexcept {
-    if (touching.empty()) return true;
     const Vec3<float> M = system.mean_normal();
     const std::size_t added = points_.size();
     for (const TouchingPoint& at : touching)
@@ -74,16 +77,14 @@ class PointsBesideEdge {
     TouchingPoint* next = touching.begin();  // those of `touching` are in its order
     for (std::size_t i = added; i < points_.size(); ++i, ++next) {
       while (next->point != points_[i].at.point) ++next;
-      press_on(points_[i], share * points_[i].weight, *next);
+      (void)press_on(points_[i], share * points_[i].weight, *next);
     }
     for (std::size_t i = 0; i < added; ++i) {
-      const float w = share * points_[i].weight;
-      if (!(w > 0)) continue;
-      if (touching.full()) has_room = false;
-      if (!has_room) continue;
-      touching.push_back(points_[i].at);
-      press_on(points_[i], w, *(touching.end() - 1));
-      memory[points_[i].at.point].touch(now);
+      TouchingPoint at = points_[i].at;
+      if (!(points_[i].weight > 0) || !press_on(points_[i], share * points_[i].weight, at)) continue;
+      has_room = !touching.full();
+      if (!has_room) break;
+      touching.push_back(at), memory[at.point].touch(now);
     }
     group(tool, system, touching);
     return has_room;
@@ -123,9 +124,13 @@ class PointsBesideEdge {
                ramp((o.dot(M) - facing) / 0.4f) * ramp((same - n.dot(M)) / 0.3f) *
                ramp(p.beneath / (0.3f * std::sqrt(area))) * ramp(3 - p.delta / (deepest * along_y));
   }
-  static void press_on(const Point& p, float w, TouchingPoint& at) noexcept {
-    at.m = ((1 - w) * at.depth * at.m + w * p.delta * p.n).normalized();
+  // False, with `at` as it was, where squares of depths are no floats.
+  [[nodiscard]] static bool press_on(const Point& p, float w, TouchingPoint& at) noexcept {
+    const Vec3<float> sum = (1 - w) * at.depth * at.m + w * p.delta * p.n;
+    if (!(sum.squaredNorm() >= (std::numeric_limits<float>::min)())) return false;
+    at.m = sum.normalized();
     at.depth += w * (p.delta - at.depth);
+    return true;
   }
   // Groups anew: points of a leaf that follow each other.
   static void group(const ToolPoints<S>& tool, PointSystem& system,

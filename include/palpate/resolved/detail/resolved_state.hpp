@@ -117,8 +117,7 @@ class ResolvedState {
   [[nodiscard]] bool has_settled() const noexcept { return shift_.has_settled() && sway_.has_settled(); }
   /// True where nothing touches and the body may have come back in part: look again, `tries` from 1 on.
   [[nodiscard]] bool look_again(int tries) noexcept {
-    if (touching_.empty()) beside_edge_.clear();
-    return touching_.empty() && shift_.come_back(tries);
+    return touching_.empty() && (beside_edge_.clear(), shift_.come_back(tries));
   }
   /// A leaf of the tool's points over the surface as it lay before the body bent and friction carried it.
   [[nodiscard]] PointBatch<S> before(const PointBatch<S>& x) const noexcept {
@@ -139,13 +138,14 @@ class ResolvedState {
     for (std::uint32_t k = 0; k < batch_size; ++k) {
       if (!(leaf.depth[k] > 0)) continue;
       deepest = (std::max)(deepest, in.depth[k]);
-      if (has_room_ = !touching_.full(); !has_room_) continue;
+      has_room_ = !touching_.full();
+      if (!has_room_) continue;
       touching_.push_back(leaf.point(k, begin + k, system_.groups() - 1, shifted));
       points_[begin + k].touch(tick_);
     }
     return deepest;
   }
-  /// After all touch().
+  /// After all touch(), where one has returned more than 0.
   void touch_beside_edges(const ContactSurface auto& object, const ToolPoints<S>& tool) noexcept {
     has_room_ &= beside_edge_.press(object, tool, origin_, tick_, system_, touching_, points_);
   }

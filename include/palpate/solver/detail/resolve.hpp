@@ -49,7 +49,7 @@ class ResolvedCollector {
         for_each_touching_leaf(tool, over, object, touch);
       }
     } while (state.look_again(++looks));
-    state.touch_beside_edges(object, tool);
+    if (deepest > 0) state.touch_beside_edges(object, tool);
     const S shift = state.shift();  // of this tick: solve() leaves the next one's
     const bool was_touching = state.has_contact();
     state.solve(force, friction, tool, X);
