@@ -117,7 +117,7 @@ class Touch {
   }
 
   [[nodiscard]] const ElasticBody& body() const noexcept { return body_; }
-  /// As it was made; of a MeshTool the spacing that its points have on this body.
+  /// As it was made; of a MeshTool the spacing that its coarse points have on this body.
   [[nodiscard]] const Tool& tool() const noexcept { return tool_; }
   [[nodiscard]] const Solver& solver() const noexcept { return solver_; }
   /// A `point_ball`'s force law F(D) at x, a position near the surface [m].

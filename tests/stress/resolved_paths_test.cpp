@@ -3,7 +3,8 @@
 /// @file Contact resolved at the tool's points on random smooth closed paths that begin and end in the air:
 /// the tool is pressed, rolled, tilted, twisted, slid and lifted; one tool has two contacts that merge and
 /// part. Bodies: half-spaces behind a box's faces, a sphere, an ellipsoid and a cylinder; response fields of
-/// an ellipsoid and of a bent one, concave above like an organ, as a mesh; and float.
+/// an ellipsoid and of a bent one, concave above like an organ, as a mesh; and float; and points of two
+/// spacings.
 ///
 /// *Continuity.* In a tick force and torque change by at most
 ///
@@ -12,7 +13,8 @@
 /// with |dx| the largest displacement of any tool point and what two ticks' tolerance leaves of displacements
 /// (2e-4 of the depths' norm), A the area of the loaded cells, K the stiffness of a flat rectangle 10:1 of
 /// that area (1.32 of a disc's; no rigid tool with so much in contact is stiffer but a more slender one, a
-/// sideways push is softer, and whole cells are more than the contact), L the farthest point from the centre
+/// sideways push is softer, and whole cells are more than the contact; with points of two spacings that of a
+/// rectangle 20:1, 1.55, for the fine ones resolve an edge half as wide), L the farthest point from the centre
 /// of mass. With friction 1 + mu times that, for its limit follows the pressure. It is checked at three step
 /// lengths: where the step is halved the bound is, and a jump would stay.
 ///
@@ -31,6 +33,7 @@
 #include <palpate/geometry/sampled_surface.hpp>
 #include <palpate/geometry/sphere.hpp>
 #include <palpate/law/friction/coulomb.hpp>
+#include <palpate/resolved/adaptive_contact_points.hpp>
 #include <palpate/resolved/contact_samples.hpp>
 #include <palpate/resolved/response_compliance.hpp>
 #include <palpate/solver/contact_solver.hpp>
@@ -51,6 +54,7 @@
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace palpate;
@@ -130,11 +134,18 @@ class ClosedPath {
 
 struct Tool {
   const char* name;
-  SurfaceSamples<double> samples;
+  SurfaceSamples<double> samples, fine;
   double tilt;
 
+  template <Topology Contacts, Real S>
+  [[nodiscard]] auto points() const {
+    if constexpr (AdaptiveTopology<Contacts>)
+      return AdaptiveTool<S>(points<S>(samples), points<S>(fine));
+    else
+      return points<S>(samples);
+  }
   template <Real S>
-  [[nodiscard]] ToolPoints<S> points() const {
+  [[nodiscard]] static ToolPoints<S> points(const SurfaceSamples<double>& samples) {
     SurfaceSamples<S> out;
     for (const V& x : samples.points) out.points.push_back(x.cast<S>());
     for (const double area : samples.areas) out.areas.push_back(static_cast<S>(area));
@@ -144,8 +155,9 @@ struct Tool {
 };
 const std::vector<Tool>& tools() {
   static const std::vector<Tool> all = [] {
-    const auto samples = [](const MeshData<double>& mesh, double spacing) {
-      return contact_samples(TriangleMesh<double>(mesh), spacing);
+    const auto made = [](const char* name, const MeshData<double>& mesh, double spacing, double tilt) {
+      const TriangleMesh<double> shape(mesh);
+      return Tool{name, contact_samples(shape, spacing), contact_samples(shape, spacing / 2), tilt};
     };
     MeshData<double> ball, block;
     append(ball, Sphere<double>({.radius = 6e-3}).mesh(1000), V(0, 6e-3, 0));
@@ -155,9 +167,8 @@ const std::vector<Tool>& tools() {
       const double s = x * x / 9e-6 - 1;
       return 0.25e-3 * s * s + z * z / 9e-3;
     });
-    return std::vector<Tool>{{"ball", samples(ball, 1e-3), 0.3},
-                             {"two hills", samples(hills, 0.9e-3), 0.1},
-                             {"block", samples(block, 1e-3), 0.1}};
+    return std::vector<Tool>{made("ball", ball, 1e-3, 0.3), made("two hills", hills, 0.9e-3, 0.1),
+                             made("block", block, 1e-3, 0.1)};
   }();
   return all;
 }
@@ -180,14 +191,26 @@ template <Real S>
   return {w.force.template cast<double>(), w.torque.template cast<double>()};
 }
 
+/// Of one spacing, all over the tool, and how many others it has.
+template <Real S>
+[[nodiscard]] std::pair<const ToolPoints<S>&, std::size_t> even(const ToolPoints<S>& tool) {
+  return {tool, 0};
+}
+template <Real S>
+[[nodiscard]] std::pair<const ToolPoints<S>&, std::size_t> even(const AdaptiveTool<S>& tool) {
+  return {tool.fine(), tool.coarse().size()};
+}
+
 /// One round of `ticks` ticks.
 template <class Solver, class Path>
 void go_round(Solver& solver, const Path& path, int ticks, Worst& worst) {
   using S = typename Solver::Scalar;
   const auto& tool = solver.tool();
+  const auto& [points, others] = even(tool);
+  const double slender = others > 0 ? 1.55 : 1.32;
   const V centre = tool.centre_of_mass().template cast<double>();
   double arm = 0;
-  for (const Vec3<S>& x : tool.points()) arm = (std::max)(arm, (x.template cast<double>() - centre).norm());
+  for (const Vec3<S>& x : points.points()) arm = (std::max)(arm, (x.template cast<double>() - centre).norm());
   solver.reset();
   Pose<double> before = path.at(0);
   const HeapCount heap;
@@ -199,8 +222,8 @@ void go_round(Solver& solver, const Path& path, int ticks, Worst& worst) {
     const Wrench<double> now = in_double(felt.wrench);
     const Status status = felt.status;
     worst.bad += !is_finite(now.force) || !is_finite(now.torque) || has(status, Status::unconverged);
-    double step = 0, area = 0;
-    for (const Vec3<S>& point : tool.points()) {
+    double step = 0, areas[2] = {};  // of points of either spacing
+    for (const Vec3<S>& point : points.points()) {
       const V x = point.template cast<double>();
       step = (std::max)(step, (X * x - before * x).norm());
     }
@@ -212,11 +235,12 @@ void go_round(Solver& solver, const Path& path, int ticks, Worst& worst) {
     double depth2 = 0;
     for (const auto& p : solver.state().points()) {
       depth2 += double(p.depth) * double(p.depth);
-      area += double(tool.area(p.point));
+      areas[p.point < others] += double(tool.area(p.point));
       const double x = double(tool.point(p.point).x());
       left |= x<-2e-3, right |= x> 2e-3, middle |= std::abs(x) < 1e-3;
     }
-    const double K = 1.32 * 2 * E_plane * std::sqrt((std::max)(area, area_before) / pi);
+    const double area = (std::max)(areas[0], areas[1]);
+    const double K = slender * 2 * E_plane * std::sqrt((std::max)(area, area_before) / pi);
     step +=
         2 * double(solver.force_law().params().tolerance) * std::sqrt(depth2);  // of this tick and the last
     if (K > 0) {
@@ -259,14 +283,14 @@ bool copies_agree(Solver& solver, const Path& path, int ticks) {
 /// 6 usual ones of each tool on each of seven bodies.
 int paths(int usual) { return std::getenv("PALPATE_STRESS") != nullptr ? 80 * usual : usual; }
 
-/// `most_work`: by which a round without friction may miss, of all work to and fro.
-template <class Body, class Compliance, class Surface, class Allowed>
+/// `Contacts`: of one spacing, or of two. `most_work`: by which a round without friction may miss, of all work to and fro.
+template <Topology Contacts = ContactPoints<128>, class Body, class Compliance, class Surface, class Allowed>
 void check(const char* name, const Body& body, const Compliance& compliance, const Surface& surface,
            const Allowed& allowed, double most_work, std::uint64_t seed) {
   using S = typename Body::Scalar;
   using Elastic = ElasticContact<S, Compliance>;
-  using Smooth = ContactSolver<Body, Elastic, Frictionless<S>, ContactPoints<128>>;
-  using Rough = ContactSolver<Body, Elastic, CoulombFriction<S>, ContactPoints<128>>;
+  using Smooth = ContactSolver<Body, Elastic, Frictionless<S>, Contacts>;
+  using Rough = ContactSolver<Body, Elastic, CoulombFriction<S>, Contacts>;
   const Elastic elastic({.compliance = compliance});
   for (const Tool& tool : tools()) {
     INFO(std::string(name), ", ", std::string(tool.name), ", seed ", seed);
@@ -275,7 +299,7 @@ void check(const char* name, const Body& body, const Compliance& compliance, con
     Worst smooth, coarse, rough, small;
     bool same = true;
 
-    Smooth slick({.object = body, .tool = tool.points<S>(), .force = elastic});
+    Smooth slick({.object = body, .tool = tool.points<Contacts, S>(), .force = elastic});
     for (int p = 0; p < paths(3); ++p) {
       const ClosedPath path(surface, far, allowed, random);
       go_round(slick, path, 500, coarse);
@@ -283,7 +307,7 @@ void check(const char* name, const Body& body, const Compliance& compliance, con
       same &= copies_agree(slick, path, 300);
     }
     Rough dry({.object = body,
-               .tool = tool.points<S>(),
+               .tool = tool.points<Contacts, S>(),
                .force = elastic,
                .friction = CoulombFriction<S>({.mu_static = S(mu), .mu_dynamic = S(0.75 * mu)})});
     for (int p = 0; p < paths(1); ++p) {
@@ -368,6 +392,13 @@ TEST_CASE("resolved contact on random closed paths: a response field") {
       ResponseCompliance(std::make_shared<const ResponseField>(ellipsoid_field(nu, 300))), seen_on(ellipsoid),
       [](const V& x) { return x.y() > 0; }, 0.01, 4);
 }
+TEST_CASE("resolved contact on random closed paths: a response field, points of two spacings") {
+  const Ellipsoid<double> ellipsoid({.axes = V(0.06, 0.04, 0.04)});
+  check<AdaptiveContactPoints<128>>(
+      "two spacings", ellipsoid,
+      ResponseCompliance(std::make_shared<const ResponseField>(ellipsoid_field(nu, 300))), seen_on(ellipsoid),
+      [](const V& x) { return x.y() > 0; }, 0.01, 4);
+}
 TEST_CASE("resolved contact on random closed paths: a response field, concave above") {
   // An ellipsoid bent upwards: its mesh is what a user has, its equation the path's.
   const V axes(0.06, 0.025, 0.04);
@@ -393,7 +424,7 @@ TEST_CASE("resolved contact, poses that jump: finite, no heap, the same bits") {
   using Solver = ContactSolver<Sphere<double>, Elastic, CoulombFriction<double>, ContactPoints<64>>;
   for (const Tool& tool : tools()) {
     Solver first({.object = Sphere<double>({.radius = 0.01}),
-                  .tool = tool.points<double>(),
+                  .tool = Tool::points<double>(tool.samples),
                   .force = Elastic({.compliance = HalfSpace({.E = E, .nu = nu})}),
                   .friction = CoulombFriction<double>({.mu_static = 0.4, .mu_dynamic = 0.3})});
     Solver second = first;

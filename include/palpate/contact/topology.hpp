@@ -3,13 +3,14 @@
 
 /// @file Contact topology: how many contact regions a scene can have (sections II and III).
 ///
-/// | shipped            | regions                              | tool         | use it when                |
-/// |--------------------|--------------------------------------|--------------|----------------------------|
-/// | `SinglePoint`      | 1, of one point                      | `PointTool`  | a stylus tip; the cheapest |
-/// | `SingleRegion`     | 1, all points that touch             | `ToolPoints` | a tool with one patch      |
-/// | `Regions<N>`       | up to N, clustered by the distance r | `ToolPoints` | the general case           |
-/// | `Coarse<T>`        | as T, of the last two                | `CoarseTool` | a tick has a budget        |
-/// | `ContactPoints<N>` | none: see resolved/                  | `ToolPoints` | accuracy, any tool         |
+/// | shipped                    | regions                  | tool           | use it when                |
+/// |----------------------------|--------------------------|----------------|----------------------------|
+/// | `SinglePoint`              | 1, of one point          | `PointTool`    | a stylus tip; the cheapest |
+/// | `SingleRegion`             | 1, all points that touch | `ToolPoints`   | a tool with one patch      |
+/// | `Regions<N>`               | up to N, clustered by r  | `ToolPoints`   | the general case           |
+/// | `Coarse<T>`                | as T, of the last two    | `CoarseTool`   | a tick has a budget        |
+/// | `ContactPoints<N>`         | none: see resolved/      | `ToolPoints`   | accuracy, any tool         |
+/// | `AdaptiveContactPoints<N>` | the same                 | `AdaptiveTool` | light touch, too           |
 ///
 /// With regions, the surplus over N joins the nearest region and `Status::region_overflow` is set. The normal
 /// force is a sum over points and does not depend on the clustering; only friction does.

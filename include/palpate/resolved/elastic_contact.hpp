@@ -47,6 +47,7 @@ namespace detail {
 struct NoRegularPart {
   static constexpr bool active = false;
   NoRegularPart(const auto& /*body*/, std::size_t /*capacity*/) {}
+  static void take_over(const NoRegularPart&) noexcept {}
   [[nodiscard]] static constexpr bool is_left_out() noexcept { return false; }
   [[nodiscard]] static Vec3<float> moved() noexcept { return Vec3<float>::Zero(); }
   [[nodiscard]] static constexpr bool has_all() noexcept { return true; }

@@ -22,7 +22,7 @@
 #include <palpate/solver/tick_result.hpp>
 #include <palpate/solver/rate_window.hpp>
 #include <palpate/solver/detail/gather.hpp>
-#include <palpate/solver/detail/resolve.hpp>
+#include <palpate/solver/detail/resolve_adaptive.hpp>
 #include <palpate/solver/detail/stress_forces.hpp>
 #include <palpate/solver/detail/tick_memory.hpp>
 // clang-format on

@@ -32,7 +32,7 @@ struct PointBall {
 /// Any closed mesh, felt at even points on it.
 struct MeshTool {
   MeshData<double> mesh;
-  double spacing = 0;                                  ///< of the points [m], > 0
+  double spacing = 0;  ///< of the points [m], > 0; where few of them touch others feel, half as far apart
   Vec3<double> centre_of_mass = Vec3<double>::Zero();  ///< [m]
   double finest = 0;  ///< how near Touch may put them on a small body [m], at most `spacing`; 0: no nearer
 };
@@ -41,7 +41,7 @@ struct MeshTool {
 struct ToolParams {
   Vec3<double> centre_of_mass = Vec3<double>::Zero();  ///< torques are about it [m]
   double contact_area = 0;  ///< A_0 [m^2]: what is pressed on the body; 0: see above
-  double spacing = 0;       ///< of the points that feel [m]; 0: 40 on A_0, but at most 1,500 in all
+  double spacing = 0;       ///< MeshTool's [m]; 0: 40 points on A_0, but at most 1,500 in all
 };
 
 [[nodiscard]] inline PointBall point_ball(double radius,

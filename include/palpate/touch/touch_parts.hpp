@@ -13,7 +13,7 @@
 #include <palpate/geometry/grown_surface.hpp>
 #include <palpate/geometry/shared_surface.hpp>
 #include <palpate/law/map/hertz_map.hpp>
-#include <palpate/resolved/contact_points.hpp>
+#include <palpate/resolved/adaptive_contact_points.hpp>
 #include <palpate/resolved/elastic_contact.hpp>
 #include <palpate/resolved/response_compliance.hpp>
 #include <palpate/resolved/response_load_deformation.hpp>
@@ -62,14 +62,14 @@ template <>
 struct TouchParts<MeshTool> {
   using Object = SampledSurface<SharedSurface<MeshSurface<double>>>;
   using Force = ElasticContact<double, ResponseCompliance>;
-  using Contacts = ContactPoints<256, 256>;
+  using Contacts = AdaptiveContactPoints<256, 256>;
   static constexpr std::size_t max_drawn = Contacts::max_points + Contacts::max_beside;
   using Shape = ResponseLoadDeformation<double, max_drawn>;
 
   TouchParts(const ElasticBody& body, const MeshTool& mesh);
 
-  double spacing;  ///< of the tool's points [m]
-  ToolPoints<double> tool;
+  double spacing;  ///< of the tool's coarse points [m]
+  AdaptiveTool<double> tool;
   Contacts contacts{};
   Absent<0> fit;
   Object object;

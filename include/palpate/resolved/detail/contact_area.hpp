@@ -24,11 +24,11 @@ class Unloaded {
  public:
   using V = VectorList::V;
   explicit Unloaded(std::size_t capacity) { x_.resize(capacity); }
-  /// Of those beneath it, at most the capacity; `points`: what each point of the tool keeps of the tick.
-  void take(const BoundedList<TouchingPoint>& beneath, const std::vector<PointMemory>& points) noexcept {
+  /// Of those beneath it, TouchingPoints, at most the capacity.
+  void take(const auto& beneath) noexcept {
     size_ = 0;
-    for (const TouchingPoint& c : beneath)
-      if (!points[c.point].loaded) x_.set(size_++, c.x);
+    for (std::size_t c = 0; c < beneath.size(); ++c)
+      if (!beneath.memory(c).loaded) x_.set(size_++, beneath[c].x);
     for (std::size_t i = size_; i < padded<V>(size_); ++i) x_.set(i, PointSystem::apart());
   }
   /// Whether one is nearer to x than the root of `distance2`.

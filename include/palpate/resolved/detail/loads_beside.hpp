@@ -59,6 +59,10 @@ class LoadsBeside {
   [[nodiscard]] Status status() const noexcept { return left_out_; }
 
   void forget() noexcept { v_ = mean_ = next_ = rest_ = Vec3<float>::Zero(), touched_ = false; }
+  /// Goes on from the last tick of `other`, of the same body.
+  void take_over(const LoadsBeside& other) noexcept {
+    v_ = other.v_, mean_ = other.mean_, next_ = other.next_, rest_ = other.rest_, touched_ = other.touched_;
+  }
   /// With the tool at X; it was at `before` in the last tick, and then touched the body or did not.
   template <ContactSurface Object, class Body, class RegularPart>
   void begin_tick(const Object& object, const Body& body, const ToolPoints<S>& tool, const Pose<S>& before,
@@ -231,6 +235,7 @@ struct NoLoadsBeside {
   NoLoadsBeside(std::size_t, std::size_t, float) {}
   static void drop() noexcept {}
   static void forget() noexcept {}
+  static void take_over(const NoLoadsBeside&) noexcept {}
   static void begin_tick(const auto&...) noexcept {}
   [[nodiscard]] static Status status() noexcept { return Status::ok; }
   [[nodiscard]] static const auto& over(const auto& X) noexcept { return X; }

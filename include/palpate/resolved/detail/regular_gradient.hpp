@@ -47,8 +47,7 @@ class RegularGradient {
   /// `given`: by others' loads and by sway.
   template <Real S>
   void measure(const PointSystem& system, const float* q, const VectorList& w, const Vec3<float>& v,
-               const auto& given, const BoundedList<TouchingPoint>& touching,
-               const ToolPoints<S>& tool) noexcept {
+               const auto& given, const auto& touching, const ToolPoints<S>& tool) noexcept {
     const Vec3<float> last = slope_;
     forget();
     const LoadFit fit(system, q);
@@ -80,8 +79,7 @@ class RegularGradient {
 
  private:
   void measure_turn(const PointSystem& system, const float* q, const VectorList& w, const SimdVec3<V>& known,
-                    const auto& given, const BoundedList<TouchingPoint>& touching, const auto& tool,
-                    const LoadFit& fit) noexcept {
+                    const auto& given, const auto& touching, const auto& tool, const LoadFit& fit) noexcept {
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const SimdVec3<V> all = w.load(i) + given.load(i) - known;
       sideways_.store(i, (V(q + i) * system.turns(i)) * across(system.directions().load(i), all));

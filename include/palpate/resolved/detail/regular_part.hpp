@@ -154,6 +154,11 @@ class RegularPart {
     is_left_out_ = false;
     moved_.setZero();
   }
+  /// Goes on from the last tick of `other`, of the same body.
+  void take_over(const RegularPart& other) noexcept {
+    is_left_out_ = other.is_left_out_;
+    moved_ = other.moved_;
+  }
   [[nodiscard]] bool is_left_out() const noexcept { return is_left_out_; }
   /// By what the contact is moved without its loads [m].
   [[nodiscard]] Vec3<float> moved() const noexcept {

@@ -18,13 +18,12 @@
 #include <palpate/resolved/detail/friction_problem.hpp>
 #include <palpate/resolved/detail/loads_beside.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
-#include <palpate/resolved/detail/points_beside_edge.hpp>
 #include <palpate/resolved/detail/reaction.hpp>
 #include <palpate/resolved/detail/regular_gradient.hpp>
 #include <palpate/resolved/detail/static_strength.hpp>
 #include <palpate/resolved/detail/tick_change.hpp>
 #include <palpate/resolved/detail/tool_surface.hpp>
-#include <palpate/resolved/detail/touching_point.hpp>
+#include <palpate/resolved/detail/touching_points.hpp>
 #include <palpate/resolved/elastic_contact.hpp>
 
 #include <algorithm>
@@ -45,9 +44,7 @@ class ResolvedState {
   using Force = ElasticContact<S, Compliance>;
 
   ResolvedState(const Compliance& body, std::size_t tool_points, std::size_t capacity)
-      : points_(tool_points),
-        touching_(capacity),
-        beside_edge_(capacity),
+      : touching_(tool_points, capacity),
         inside_(capacity),
         contacts_(capacity),
         system_(capacity, static_cast<float>(1 - 2 * body.nu()), has_friction),
@@ -63,9 +60,7 @@ class ResolvedState {
     last_.resize(padded), pressure_.resize(padded), result_.resize(padded), reaction_.resize(padded);
   }
 
-  void reset() noexcept {
-    contacts_.clear(), forget(), beside_.forget(), tick_ += 2;  // no point has touched in the tick before
-  }
+  void reset() noexcept { contacts_.clear(), forget(), beside_.forget(), touching_.forget(); }
   [[nodiscard]] bool has_contact() const noexcept { return !contacts_.empty(); }
   [[nodiscard]] std::span<const PointContact<S>> contacts() const noexcept {
     return {contacts_.begin(), contacts_.size()};
@@ -73,16 +68,21 @@ class ResolvedState {
   /// The last tick's loads on the body, as many as the list has room for.
   void loads(auto& out) const noexcept {
     out.clear();
+    add_loads(out, S(1));
+  }
+  /// Adds `share` of them.
+  void add_loads(auto& out, S share) const noexcept {
+    const S per_load = share * per_load_;
     for (std::size_t i = 0, k = 0; i < size() && k < contacts_.size() && !out.full(); ++i) {
-      const PointMemory& p = points_[touching_[inside_[i]].point];
+      const PointMemory& p = touching_.memory(inside_[i]);
       if (!p.loaded) continue;
       const auto in_S = [](const Vec3<float>& a) -> Vec3<S> { return a.template cast<S>(); };
       const Vec3<float> m = system_.direction(i), sway = m.dot(p.load) * sway_.pull();
-      out.push_back({origin_ + in_S(carried_.at_rest(system_.foot(i))), in_S(m),
-                     per_load_ * in_S(p.load + sway), static_cast<S>(system_.area(i)),
-                     per_load_ * in_S(strain_.beside(m, m.dot(p.load)) - sway), in_S(strain_.shift()),
+      out.push_back({origin() + in_S(carried_.at_rest(system_.foot(i))), in_S(m),
+                     per_load * in_S(p.load + sway), static_cast<S>(system_.area(i)),
+                     per_load * in_S(strain_.beside(m, m.dot(p.load)) - sway), in_S(strain_.shift()),
                      contacts_[k++].position, in_S(touching_[inside_[i]].outward),
-                     static_cast<S>(strain_.raised(i, system_, pressure_, regular_))});
+                     share * static_cast<S>(strain_.raised(i, system_, pressure_, regular_))});
     }
   }
   /// Loads of other tools on the same body, for the next solve().
@@ -95,20 +95,33 @@ class ResolvedState {
   [[nodiscard]] bool slides() const noexcept { return slides_; }
   /// Of what acts, in contact: what is left out.
   [[nodiscard]] Status left_out() const noexcept {
-    return beside_.status() | (has_room_ && regular_.has_all() ? Status::ok : Status::point_overflow);
+    return beside_.status() |
+           (touching_.has_room() && regular_.has_all() ? Status::ok : Status::point_overflow);
   }
   /// Area that touches [m^2].
   [[nodiscard]] float area(const ToolPoints<S>& tool) noexcept {
-    unloaded_.take(touching_, points_);
+    unloaded_.take(touching_);
     return contact_area(system_, pressure_, unloaded_, [&](std::size_t i) noexcept {
       return rounded_rim_pressure(tool, touching_[inside_[i]], system_.b());
     });
+  }
+  /// Of the points that have been found, how many are alike deep.
+  [[nodiscard]] float points_alike_deep() const noexcept { return touching_.alike_deep(); }
+  /// Before points are looked for: goes on from the last tick of `other`, the same tool at other points, of
+  /// which those that touch in this one have been found; `nearest(i)`: points that have its point i nearest.
+  void take_over(const ResolvedState& other, const ToolPoints<S>& its, const ToolPoints<S>& tool,
+                 const auto& nearest) noexcept {
+    touching_.take_over(other.touching_, its, tool, nearest);
+    contacts_ = other.contacts_, pose_ = other.pose_, slides_ = other.slides_, strength_ = other.strength_;
+    regular_.take_over(other.regular_), beside_.take_over(other.beside_);
+    carried_ = other.carried_, strain_ = other.strain_, cones_ = other.cones_, sway_ = other.sway_;
+    gradient_ = other.gradient_, shift_ = other.shift_, reaction_ = other.reaction_;
   }
   void begin_tick(const ContactSurface auto& object, const Force& force, const ToolPoints<S>& tool,
                   const Pose<S>& X) noexcept {
     per_load_ = static_cast<S>(4 * std::numbers::pi * force.shear_modulus());
     beside_.begin_tick(object, force.compliance(), tool, pose_, X, has_contact(), per_load_, regular_);
-    ++tick_, touching_.clear(), beside_edge_.clear(), system_.begin_tick(), has_room_ = true;
+    touching_.begin_tick(), system_.begin_tick();
   }
   /// Where the tool at X is over the undeformed surface, which others' loads move.
   [[nodiscard]] Pose<S> over(const Pose<S>& X) const noexcept { return beside_.over(X); }
@@ -117,7 +130,7 @@ class ResolvedState {
   [[nodiscard]] bool has_settled() const noexcept { return shift_.has_settled() && sway_.has_settled(); }
   /// True where nothing touches and the body may have come back in part: look again, `tries` from 1 on.
   [[nodiscard]] bool look_again(int tries) noexcept {
-    return touching_.empty() && (beside_edge_.clear(), shift_.come_back(tries));
+    return touching_.begin_again() && shift_.come_back(tries);
   }
   /// A leaf of the tool's points over the surface as it lay before the body bent and friction carried it.
   [[nodiscard]] PointBatch<S> before(const PointBatch<S>& x) const noexcept {
@@ -128,26 +141,11 @@ class ResolvedState {
   /// `rotation`: of the tool; the first is at `first` where it is. Returns how deep [m].
   S touch(const ToolSurface<S>& surface, std::uint32_t begin, const Mat3<float>& rotation,
           const Vec3<S>& first, const PointBatch<S>& x, const PenetrationBatch<S>& in) noexcept {
-    if (touching_.empty() && beside_edge_.empty()) origin_ = Vec3<S>(x.x[0], x.y[0], x.z[0]);
-    const TouchingLeaf leaf = surface.find(begin, rotation, x, in, origin_);
-    const float shifted = shift_.share_at(first);
-    beside_edge_.add(leaf, begin, shifted);
-    if (!(leaf.volume > 0)) return S(0);
-    if (!touching_.full()) system_.touch(leaf.deepest, leaf.volume, leaf.volume_x, leaf.volume_m);
-    S deepest = S(0);
-    for (std::uint32_t k = 0; k < batch_size; ++k) {
-      if (!(leaf.depth[k] > 0)) continue;
-      deepest = (std::max)(deepest, in.depth[k]);
-      has_room_ = !touching_.full();
-      if (!has_room_) continue;
-      touching_.push_back(leaf.point(k, begin + k, system_.groups() - 1, shifted));
-      points_[begin + k].touch(tick_);
-    }
-    return deepest;
+    return touching_.add(surface, begin, rotation, x, in, shift_.share_at(first), system_);
   }
   /// After all touch(), where one has returned more than 0.
   void touch_beside_edges(const ContactSurface auto& object, const ToolPoints<S>& tool) noexcept {
-    has_room_ &= beside_edge_.press(object, tool, origin_, tick_, system_, touching_, points_);
+    touching_.press_beside_edges(object, tool, system_);
   }
   /// Solves for the loads with the tool at X.
   void solve(const Force& force, const auto& friction, const ToolPoints<S>& tool, const Pose<S>& X) noexcept {
@@ -155,17 +153,19 @@ class ResolvedState {
     contacts_.clear(), residual_ = {};
     const Pose<S> before = std::exchange(pose_, X);
     if (touching_.empty()) return forget();
-    const float tolerance = static_cast<float>(force.params().tolerance) * norm_of_depths(touching_);
+    const float tolerance = static_cast<float>(force.params().tolerance) * touching_.norm_of_depths();
     const Vec3<S>& x = tool.point(touching_[0].point);
     const float moved = first ? 0.f : static_cast<float>((X * x - before * x).norm());
     if constexpr (has_friction)  // those that stick go with the tool
-      for (const TouchingPoint& c : touching_)
-        if (PointMemory& p = points_[c.point]; p.loaded)
-          p.anchor += Vec3<S>(X * tool.point(c.point) - before * tool.point(c.point)).template cast<float>();
+      for (std::size_t c = 0; c < touching_.size(); ++c)
+        if (PointMemory& p = touching_.memory(c); p.loaded) {
+          const Vec3<S>& at = tool.point(touching_[c].point);
+          p.anchor += Vec3<S>(X * at - before * at).template cast<float>();
+        }
     inside_.clear(), strain_.take_depth(system_.deepest());
     // First those that carry load or came near to it.
     for (std::uint32_t c = 0; c < touching_.size(); ++c) {
-      const PointMemory& p = points_[touching_[c].point];
+      const PointMemory& p = touching_.memory(c);
       if (p.loaded || p.sunk - touching_[c].depth < near * system_.deepest()) inside_.push_back(c);
     }
     bool left_out = false;
@@ -197,17 +197,18 @@ class ResolvedState {
 
   [[nodiscard]] std::size_t size() const noexcept { return inside_.size(); }
   void forget() noexcept {
-    slides_ = false, strength_ = {}, carried_.clear(origin_), sway_.forget();
+    slides_ = false, strength_ = {}, carried_.clear(origin()), sway_.forget();
     shift_.forget(), gradient_.forget(), beside_.drop();
     if constexpr (has_friction) cones_.slope.forget(), reaction_.forget(), result_.step = 0;
     if constexpr (Strain::active) strain_.forget(), regular_.take_in();
   }
+  [[nodiscard]] const Vec3<S>& origin() const noexcept { return touching_.origin(); }
   // Where a load at `foot` acts, seen from afar.
   [[nodiscard]] Vec3<double> acts_at(const Vec3<float>& foot) const noexcept {
-    return (origin_ + (foot + strain_.shift()).template cast<S>()).template cast<double>();
+    return (origin() + (foot + strain_.shift()).template cast<S>()).template cast<double>();
   }
   [[nodiscard]] GivenDisplacements<Beside, Sway> given() const noexcept { return {beside_, sway_}; }
-  [[nodiscard]] PointMemory& point(std::size_t i) noexcept { return points_[touching_[inside_[i]].point]; }
+  [[nodiscard]] PointMemory& point(std::size_t i) noexcept { return touching_.memory(inside_[i]); }
   void build(const Force& force, const ToolPoints<S>& tool) noexcept {
     system_.clear();
     for (const std::uint32_t c : inside_) {
@@ -229,7 +230,7 @@ class ResolvedState {
       regular_.place_points(force.compliance(), acts_at(Vec3<float>::Zero()), system_.feet(), size(),
                             [this](std::size_t i) -> std::uint32_t& { return point(i).triangle; });
     }
-    if constexpr (Beside::active) beside_.place(force.compliance(), origin_, per_load_, regular_);
+    if constexpr (Beside::active) beside_.place(force.compliance(), origin(), per_load_, regular_);
     if constexpr (RegularPart::active) regular_.build();
     if (regular_.is_left_out()) system_.move(regular_.moved());
     if constexpr (Beside::active) beside_.move_points(system_, regular_);
@@ -284,7 +285,7 @@ class ResolvedState {
   void begin_loads(float share) noexcept {
     begin_with<has_friction>(system_, last_, share, given(), regular_.moved(), pressure_, result_);
     if constexpr (has_friction)
-      cones_.place(system_, pressure_.q.data(), origin_, gradient_.slope(), reaction_.passes(), result_);
+      cones_.place(system_, pressure_.q.data(), origin(), gradient_.slope(), reaction_.passes(), result_);
   }
   /// Takes in points that the surface has not given way to, or holds them where they are: w was `left_out` in
   /// this tick. False where none came in, and not `again`.
@@ -300,9 +301,9 @@ class ResolvedState {
         continue;
       }
       const TouchingPoint& at = touching_[c];
-      PointMemory& p = points_[at.point];
+      PointMemory& p = touching_.memory(c);
       // Gaps change little in a tick: each is looked at in every eighth, but where no other point is left.
-      if ((tick_ + at.point) % 8 != 0 && !none_loaded && !left_out) continue;
+      if ((touching_.tick() + at.point) % 8 != 0 && !none_loaded && !left_out) continue;
       const Vec3<float> m = system_.direction_at(at.x, at.m);
       float depth = at.depth / m.dot(at.m);
       const Vec3<float> foot = at.x - depth * m;
@@ -332,12 +333,12 @@ class ResolvedState {
       gradient_.measure(system_, pressure_.q.data(), regular_.response(), v, given(), touching_, tool);
       regular_.keep(pressure_.q.data());
       if (!regular_.is_left_out())
-        shift_.measure(system_, pressure_.q.data(), regular_.response(), gradient_.arc(), origin_, moved);
+        shift_.measure(system_, pressure_.q.data(), regular_.response(), gradient_.arc(), origin(), moved);
     }
     if constexpr (!has_friction) reaction_.measure(system_, pressure_.q, gradient_);
     if constexpr (has_friction)
       reaction_.measure(system_, cones_.axes(system_), pressure_.q, result_, given(), regular_.moved());
-    carried_.clear(origin_);
+    carried_.clear(origin());
     for (std::size_t i = 0; i < size(); ++i) {
       const TouchingPoint& at = touching_[inside_[i]];
       PointMemory& p = point(i);
@@ -366,9 +367,7 @@ class ResolvedState {
     }
   }
 
-  std::vector<PointMemory> points_;
-  BoundedList<TouchingPoint> touching_;
-  PointsBesideEdge<S> beside_edge_;
+  TouchingPoints<S> touching_;
   BoundedList<std::uint32_t> inside_;  // of touching_, rising: those that are solved for
   BoundedList<PointContact<S>> contacts_;
   PointSystem system_;
@@ -387,10 +386,8 @@ class ResolvedState {
   PALPATE_NO_UNIQUE_ADDRESS Shift shift_;
   Residual residual_;
   Pose<S> pose_;
-  Vec3<S> origin_;
   S per_load_ = 0;  // 4 pi mu [Pa]
-  std::uint32_t tick_ = 1;
-  bool slides_ = false, has_room_ = true;
+  bool slides_ = false;
   PALPATE_NO_UNIQUE_ADDRESS std::conditional_t<has_friction, StaticStrength, Absent<6>> strength_;
 
  public:

@@ -80,11 +80,4 @@ template <SimdOrReal W>
   return clamp(W(1 / whole) * (product - W(upright)), 0.f, 1.f);
 }
 
-/// Of points beneath the surface [m]; never 0, though squares of depths may be no floats.
-[[nodiscard]] inline float norm_of_depths(const BoundedList<TouchingPoint>& touching) noexcept {
-  float sum = (std::numeric_limits<float>::min)();
-  for (const TouchingPoint& c : touching) sum += c.depth * c.depth;
-  return std::sqrt(sum);
-}
-
 }  // namespace palpate::detail

@@ -27,11 +27,15 @@ class ResolvedCollector {
   using Sum = NoMap;  // there is no sum by a law
   [[nodiscard]] State initial_state() const { return State(body_, tool_points_, Contacts::max_points); }
 
-  template <ContactSurface Object, class Friction, class Acting>
-  void resolve(const Object& object, const ToolPoints<S>& tool, const Force& force, const Friction& friction,
-               const Pose<S>& X, const Acting&, State& state, FixedVector<ContactState<S>, 1>& contacts,
-               TickResult<S>& result) const noexcept {
-    result.status = Status::ok;
+  void resolve(const ContactSurface auto& object, const ToolPoints<S>& tool, const Force& force,
+               const auto& friction, const Pose<S>& X, const auto& acting, State& state,
+               FixedVector<ContactState<S>, 1>& contacts, TickResult<S>& result) const noexcept {
+    const S deepest = find(object, tool, force, X, state);
+    solve(object, tool, force, friction, X, acting, deepest, state, contacts, result);
+  }
+  /// Points that are beneath the surface. Returns how deep [m].
+  S find(const ContactSurface auto& object, const ToolPoints<S>& tool, const Force& force, const Pose<S>& X,
+         State& state) const noexcept {
     state.begin_tick(object, force, tool, X);
     const Mat3<float> rotation = X.rotation.template cast<float>();
     S deepest = S(0);
@@ -50,6 +54,14 @@ class ResolvedCollector {
       }
     } while (state.look_again(++looks));
     if (deepest > 0) state.touch_beside_edges(object, tool);
+    return deepest;
+  }
+  /// The loads at them.
+  template <class Acting>
+  void solve(const ContactSurface auto& object, const ToolPoints<S>& tool, const Force& force,
+             const auto& friction, const Pose<S>& X, const Acting&, S deepest, State& state,
+             FixedVector<ContactState<S>, 1>& contacts, TickResult<S>& result) const noexcept {
+    result.status = Status::ok;
     const S shift = state.shift();  // of this tick: solve() leaves the next one's
     const bool was_touching = state.has_contact();
     state.solve(force, friction, tool, X);

@@ -77,12 +77,21 @@ PALPATE_COMPILED_INLINE TouchParts<PointBall>::TouchParts(const ElasticBody& bod
   return (std::min)(tool.spacing, (std::max)(tool.finest, std::sqrt(body.mesh().area() / most)));
 }
 
+/// At two spacings, the fine half the coarse.
+[[nodiscard]] inline AdaptiveTool<double> adaptive_tool(const MeshTool& tool, double spacing) {
+  const TriangleMesh<double> mesh(tool.mesh);
+  const auto points = [&](double apart) {
+    return ToolPoints<double>(contact_samples(mesh, apart),
+                              {.contact_area = apart * apart, .centre_of_mass = tool.centre_of_mass});
+  };
+  return {points(spacing), points(spacing / 2)};
+}
+
 PALPATE_COMPILED_INLINE TouchParts<MeshTool>::TouchParts(const ElasticBody& body, const MeshTool& mesh)
     : spacing(point_spacing(body, mesh)),
-      tool(contact_samples(TriangleMesh<double>(mesh.mesh), spacing),
-           {.contact_area = spacing * spacing, .centre_of_mass = mesh.centre_of_mass}),
+      tool(adaptive_tool(mesh, spacing)),
       object(SharedSurface(body.surface()),
-             {.spacing = sample_spacing(body.surface()->lower(), body.surface()->upper(), spacing)}),
+             {.spacing = sample_spacing(body.surface()->lower(), body.surface()->upper(), spacing / 2)}),
       force({.compliance = ResponseCompliance(body.field())}),
       shape(body.field(), body.mesh().data()) {}
 
