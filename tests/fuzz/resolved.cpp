@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 
 /// @file Ticks of tools whose contact is resolved at their points: half-space and response field, with and
-/// without friction, beside other tools.
+/// without friction, beside other tools, with points of one spacing and of two.
 
 #include "ticks.hpp"
 
@@ -33,17 +33,18 @@ const double reach = Vec3<double>(6e-3, 4e-3, 4e-3).norm(), deepest = 0.02;
 const double most = 1.5 * 2 * E_plane * reach * deepest;
 constexpr double near_base = 15;  // a field's stiffness over the half-space's, at most: above its fixed face
 
+constexpr double spacing = 2.5e-3;
 template <Real S>
-SurfaceSamples<S> samples(const MeshData<double>& mesh) {
-  return contact_samples(TriangleMesh<S>(mesh_cast<S>(mesh)), S(2.5e-3));
+SurfaceSamples<S> samples(const MeshData<double>& mesh, double apart) {
+  return contact_samples(TriangleMesh<S>(mesh_cast<S>(mesh)), S(apart));
 }
 template <Real S>
-SurfaceSamples<S> brick() {
-  return samples<S>(Box<double>({.half = {6e-3, 4e-3, 4e-3}}).mesh(26));
+SurfaceSamples<S> brick(double apart = spacing) {
+  return samples<S>(Box<double>({.half = {6e-3, 4e-3, 4e-3}}).mesh(26), apart);
 }
 template <Real S>
 SurfaceSamples<S> egg() {
-  return samples<S>(Ellipsoid<double>({.axes = {6e-3, 4e-3, 4e-3}}).mesh(300));
+  return samples<S>(Ellipsoid<double>({.axes = {6e-3, 4e-3, 4e-3}}).mesh(300), spacing);
 }
 template <Real S>
 ToolPoints<S> tool(const SurfaceSamples<S>& samples) {
@@ -133,9 +134,15 @@ void drags(Bytes& in) {
   walk(solver, near_base * most, in, nothing);
 }
 constexpr double cell = 6e-6, largest = 1e4 * E * cell;  // [m^2], [N]: of a load that is taken
-/// Beside loads that come and go, of a tool that presses, pulls or is out of its mind: any number of newtons.
+/// Points of two spacings, beside loads that come and go, of a tool that presses, pulls or is out of its mind:
+/// any number of newtons.
 void pair(Bytes& in) {
-  static auto solver = test::on_block(block, rubber(), coulomb<double>(), brick<double>());
+  using Elastic = ElasticContact<double, ResponseCompliance>;
+  static ContactSolver<Box<double>, Elastic, CoulombFriction<double>, AdaptiveContactPoints<256, 256>> solver(
+      {.object = test::standing_block(block),
+       .tool = {tool(brick<double>()), tool(brick<double>(spacing / 2))},
+       .force = Elastic({.compliance = rubber()}),
+       .friction = coulomb<double>()});
   std::vector<SurfaceLoad<double>> loads;
   walk(solver, std::numeric_limits<double>::infinity(), in, [&loads](auto& state, Bytes& bytes) {
     const std::uint8_t op = bytes.byte();

@@ -68,6 +68,7 @@ class SampledSurface {
     row_ = 4 * blocks_[0];
     layer_ = row_ * 4 * blocks_[1];
     sample();
+    slope_ = steepest();
   }
 
   [[nodiscard]] SurfacePoint<S> closest(const Vec3<S>& x) const noexcept { return body_.closest(x); }
@@ -138,11 +139,13 @@ class SampledSurface {
     std::array<std::size_t, 3> node;
     std::array<float, 3> t;
     if (!locate(c, node, t)) return false;
-    const S here = static_cast<S>(field_[index(node)]);
-    if ((here - margin) * w_ > r) return true;
     const std::array<std::size_t, 3> b{node[0] / 4, node[1] / 4, node[2] / 4};
     const S block = w_ * static_cast<S>(block_[(b[2] * blocks_[1] + b[1]) * blocks_[0] + b[0]]);
-    return block - (c - centre(b)).norm() > apart;
+    if (block - (c - centre(b)).norm() > apart) return true;
+    // On the way to a point inside the field falls to 0, no faster than by its slope.
+    const Rows rows = rows_around(&field_[index(node)], Spline<float>(t[1]), Spline<float>(t[2]));
+    const S field = w_ * static_cast<S>(Spline<float>(t[0]).sum(rows.value));
+    return field > slope_ * (r + S(1e-3L) * w_);  // of floats below 8
   }
 
   [[nodiscard]] S reach() const noexcept { return body_.reach(); }
@@ -153,10 +156,10 @@ class SampledSurface {
   using Four = detail::Simd4;
 
   // A coefficient is within 0.75 w of its sample, the nearest sample is within 0.87 w, and the field within
-  // 1.62 w of d, together 3.24 w: a coefficient of more than `margin` has no contact in its cell. `far` is
+  // 1.62 w of d, together 3.24 w: a coefficient of more than `clear` has no contact in its cell. `far` is
   // chosen: more than that, and few enough nodes.
-  static constexpr S margin = S(3.25L), far = S(8);  // of samples that do not count
-  static constexpr float clear = 3.25f;              // margin
+  static constexpr float clear = 3.25f;
+  static constexpr S far = S(8);  // of samples that do not count
 
   /// The three quadratic B-splines that are not 0 at an offset t in [-1/2, 1/2] from a node, and their
   /// derivatives.
@@ -258,6 +261,33 @@ class SampledSurface {
     return node[2] * layer_ + node[1] * row_ + node[0];
   }
 
+  /// The steepest slope of the field outside the body. In a node's cell a derivative is a mean of differences
+  /// of coefficients next to each other, times B-splines; so it is no more than the largest of them.
+  [[nodiscard]] S steepest() const {
+    const std::array<std::size_t, 3> step{1, row_, layer_};
+    float most2 = 0;
+    for (std::size_t z = 1; z + 1 < 4 * blocks_[2]; ++z) {
+      for (std::size_t y = 1; y + 1 < 4 * blocks_[1]; ++y) {
+        for (std::size_t x = 1; x + 1 < 4 * blocks_[0]; ++x) {
+          float slope2 = 0, highest = 0;
+          for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t along = step[k], across = step[(k + 1) % 3], up = step[(k + 2) % 3];
+            float most = 0;
+            for (std::size_t i = 0; i < 9; ++i) {
+              const float* at = &field_[index({x, y, z}) - across - up + i % 3 * across + i / 3 * up];
+              const float before = *(at - along), here = *at, after = *(at + along);
+              most = (std::max)({most, std::abs(here - before), std::abs(after - here)});
+              highest = (std::max)({highest, before, here, after});
+            }
+            slope2 += most * most;
+          }
+          if (highest > 0) most2 = (std::max)(most2, slope2);
+        }
+      }
+    }
+    return static_cast<S>(std::sqrt(most2));
+  }
+
   void sample() {
     const std::array<std::size_t, 3> n{4 * blocks_[0], 4 * blocks_[1], 4 * blocks_[2]};
     std::vector<float> f(layer_ * n[2], static_cast<float>(far));
@@ -299,6 +329,7 @@ class SampledSurface {
   std::array<std::size_t, 3> blocks_;  // along each axis
   std::array<S, 3> middle_;            // of the grid, in units of w from the first node
   std::size_t row_, layer_;            // nodes in each
+  S slope_{};                          // of the field outside, at most
   std::vector<float> field_;           // c/w, x fastest
   std::vector<float> block_;           // d/w at the middle of each block
 };

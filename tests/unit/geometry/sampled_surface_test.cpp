@@ -164,6 +164,27 @@ TEST_CASE("sampled surface: separation never hides a contact and decides where i
   CHECK(near == 0);
 }
 
+TEST_CASE_TEMPLATE("sampled surface: small balls beside the body are apart, and none that touches is", S,
+                   float, double) {
+  // w is larger than the balls: what is known of the distance is the field itself, not its nodes.
+  constexpr S w = S(2e-3L);
+  const SampledSurface<Ellipsoid<S>> body(Ellipsoid<S>({.axes = {S(0.03L), S(0.02L), S(0.02L)}}),
+                                          {.spacing = w});
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> unit(0, 1);
+  int touching = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const SurfacePoint<S> at = body.closest(Vec3<S>((0.03 * random_direction(random)).template cast<S>()));
+    const S r = static_cast<S>(1e-4 + 1.5e-3 * unit(random));
+    CHECK(body.separated(at.position + S(2) * r * at.normal, r));
+    const Vec3<S> near = at.position + static_cast<S>(1.2 * unit(random)) * r * at.normal;
+    if (!(body.penetration(near - r * at.normal).depth > S(0))) continue;
+    ++touching;
+    CHECK(!body.separated(near, r));
+  }
+  CHECK(touching > 1000);
+}
+
 TEST_CASE_TEMPLATE("sampled surface: queries that are not finite, heap, and the same bits", S, float,
                    double) {
   const S nan = std::numeric_limits<S>::quiet_NaN(), inf = std::numeric_limits<S>::infinity();
