@@ -9,7 +9,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -17,7 +16,7 @@
 namespace palpate {
 
 /// The same tool's points twice, from `contact_samples`: the fine ones half as far apart as the coarse. Tool
-/// coordinates. Reports fine points that are not more than the coarse, or have another centre of mass.
+/// coordinates. Reports fine points that are fewer than the coarse, or have another centre of mass.
 template <Real S>
 class AdaptiveTool {
  public:
@@ -26,8 +25,8 @@ class AdaptiveTool {
   AdaptiveTool(ToolPoints<S> coarse, ToolPoints<S> fine)
       : coarse_(std::move(coarse)), fine_(std::move(fine)) {
     constexpr const char* where = "AdaptiveTool";
-    if (fine_.size() <= coarse_.size())
-      fail(where, "needs more fine points than coarse, fine minus coarse must be > 0",
+    if (fine_.size() < coarse_.size())
+      fail(where, "needs as many fine points as coarse or more, fine minus coarse must be >= 0",
            static_cast<double>(fine_.size()) - static_cast<double>(coarse_.size()));
     if (fine_.centre_of_mass() != coarse_.centre_of_mass())
       fail(where, "needs one centre of mass, the distance of both points' [m] must be 0",
@@ -55,16 +54,25 @@ class AdaptiveTool {
 
  private:
   using Lists = std::vector<std::vector<std::uint32_t>>;
+  // By each of the others, those of the points to which it is the nearest.
   [[nodiscard]] static Lists by_nearest(const ToolPoints<S>& points, const ToolPoints<S>& others) {
     Lists out(others.size());
-    for (std::size_t k = 0; k < points.size(); ++k) {
-      std::size_t nearest = 0;
-      S least = (std::numeric_limits<S>::max)();
-      for (std::size_t i = 0; i < others.size(); ++i) {
-        const S d2 = (others.point(i) - points.point(k)).squaredNorm();
-        if (d2 < least) least = d2, nearest = i;
+    std::uint32_t nearest = 0;  // the last point's, which is near by
+    for (std::uint32_t k = 0; k < points.size(); ++k) {
+      const Vec3<S>& x = points.point(k);
+      S least = (others.point(nearest) - x).norm();
+      const auto nodes = others.nodes();
+      for (std::uint32_t n = 0; n < nodes.size();) {
+        const auto& node = nodes[n];
+        if ((node.centre - x).norm() - node.radius > least) {
+          n = node.skip;
+          continue;
+        }
+        if (node.skip == ++n)
+          for (std::uint32_t i = node.begin; i < node.end; ++i)
+            if (const S far = (others.point(i) - x).norm(); far < least) least = far, nearest = i;
       }
-      out[nearest].push_back(static_cast<std::uint32_t>(k));
+      out[nearest].push_back(k);
     }
     return out;
   }

@@ -259,7 +259,7 @@ TEST_CASE("adaptive tools: what is wrong is said") {
     }
     return std::string();
   };
-  CHECK(message(ball_points(spacing / 2), ball_points(spacing)).find("more fine points") !=
+  CHECK(message(ball_points(spacing / 2), ball_points(spacing)).find("as many fine points") !=
         std::string::npos);
   CHECK(message(ball_points(spacing), ball_points(spacing / 2, V(0, 1e-3, 0))).find("centre of mass") !=
         std::string::npos);

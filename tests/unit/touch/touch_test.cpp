@@ -220,6 +220,16 @@ TEST_CASE("touch, a ball larger than the body: points as near as the body asks f
   CHECK(told.tick(at(V(0, 0.054, 0)), 1e-3).points.size() < 40);  // measured: 34, all fine; 4 to a coarse one
 }
 
+TEST_CASE("touch, a tool of many points: the fine ones are as many as can be") {
+  const ElasticBody body(test::ellipsoid_mesh(V(0.03, 0.02, 0.02), 16),
+                         {.E = 1e6, .nu = 0.49, .fixed = below(-0.016), .vertices = 200});
+  const MeshTool many = ball(0.04, {.spacing = 1.7e-3});
+  const Touch touch(body, many);
+  CHECK(touch.tool().spacing == many.spacing);
+  CHECK_RELATIVE(double(touch.solver().tool().coarse().size()), 6957, 0.01);  // 4 pi R^2 over spacing^2
+  CHECK_RELATIVE(double(touch.solver().tool().fine().size()), 10000, 0.01);   // half of contact_samples' most
+}
+
 TEST_CASE("touch, a plate that touches lightly: the force hardly changes as it turns in place") {
   const ElasticBody body(test::ellipsoid_mesh(V(0.06, 0.04, 0.04), 24),
                          {.E = 50e3, .nu = 0.45, .fixed = below(-0.03), .vertices = 300});

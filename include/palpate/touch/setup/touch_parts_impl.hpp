@@ -6,6 +6,7 @@
 #include <palpate/calibrate/response_map.hpp>
 #include <palpate/geometry/mesh_extremal_points.hpp>
 #include <palpate/resolved/contact_samples.hpp>
+#include <palpate/resolved/setup/centroidal_cells.hpp>
 #include <palpate/touch/touch_parts.hpp>
 
 #include <algorithm>
@@ -77,14 +78,18 @@ PALPATE_COMPILED_INLINE TouchParts<PointBall>::TouchParts(const ElasticBody& bod
   return (std::min)(tool.spacing, (std::max)(tool.finest, std::sqrt(body.mesh().area() / most)));
 }
 
-/// At two spacings, the fine half the coarse.
+/// The fine points' spacing: half the coarse one, but for tools of so many points that contact_samples(),
+/// which counts cells beyond edges, too, would refuse it.
+[[nodiscard]] inline double fine_spacing(const TriangleMesh<double>& mesh, double spacing) {
+  return std::clamp(std::sqrt(2 * mesh.area() / max_contact_samples), spacing / 2, spacing);
+}
 [[nodiscard]] inline AdaptiveTool<double> adaptive_tool(const MeshTool& tool, double spacing) {
   const TriangleMesh<double> mesh(tool.mesh);
   const auto points = [&](double apart) {
     return ToolPoints<double>(contact_samples(mesh, apart),
                               {.contact_area = apart * apart, .centre_of_mass = tool.centre_of_mass});
   };
-  return {points(spacing), points(spacing / 2)};
+  return {points(spacing), points(fine_spacing(mesh, spacing))};
 }
 
 PALPATE_COMPILED_INLINE TouchParts<MeshTool>::TouchParts(const ElasticBody& body, const MeshTool& mesh)
