@@ -142,8 +142,11 @@ class SampledSurface {
     const std::array<std::size_t, 3> b{node[0] / 4, node[1] / 4, node[2] / 4};
     const S block = w_ * static_cast<S>(block_[(b[2] * blocks_[1] + b[1]) * blocks_[0] + b[0]]);
     if (block - (c - centre(b)).norm() > apart) return true;
-    // On the way to a point inside the field falls to 0, no faster than by its slope.
-    const Rows rows = rows_around(&field_[index(node)], Spline<float>(t[1]), Spline<float>(t[2]));
+    // On the way to a point inside the field falls to 0, no faster than by its slope. Hardly so far where the
+    // nearest coefficient is less by a spacing.
+    const float* const at = &field_[index(node)];
+    if (w_ * (static_cast<S>(*at) + S(1)) <= slope_ * r) return false;
+    const Rows rows = rows_around(at, Spline<float>(t[1]), Spline<float>(t[2]));
     const S field = w_ * static_cast<S>(Spline<float>(t[0]).sum(rows.value));
     return field > slope_ * (r + S(1e-3L) * w_);  // of floats below 8
   }
