@@ -280,10 +280,11 @@ bool copies_agree(Solver& solver, const Path& path, int ticks) {
   return same;
 }
 
-/// 6 usual ones of each tool on each of seven bodies.
+/// 6 usual ones of each tool in each of eight scenes.
 int paths(int usual) { return std::getenv("PALPATE_STRESS") != nullptr ? 80 * usual : usual; }
 
-/// `Contacts`: of one spacing, or of two. `most_work`: by which a round without friction may miss, of all work to and fro.
+/// `Contacts`: of one spacing, or of two. `most_work`: by which a round without friction may miss, of all work
+/// to and fro.
 template <Topology Contacts = ContactPoints<128>, class Body, class Compliance, class Surface, class Allowed>
 void check(const char* name, const Body& body, const Compliance& compliance, const Surface& surface,
            const Allowed& allowed, double most_work, std::uint64_t seed) {

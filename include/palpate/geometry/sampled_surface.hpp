@@ -142,8 +142,8 @@ class SampledSurface {
     const std::array<std::size_t, 3> b{node[0] / 4, node[1] / 4, node[2] / 4};
     const S block = w_ * static_cast<S>(block_[(b[2] * blocks_[1] + b[1]) * blocks_[0] + b[0]]);
     if (block - (c - centre(b)).norm() > apart) return true;
-    // On the way to a point inside the field falls to 0, no faster than by its slope. Hardly so far where the
-    // nearest coefficient is less by a spacing.
+    // On the way to a point inside the field falls to 0, no faster than by its slope. It is not worked out
+    // where the nearest coefficient, and a spacing more, would be too little.
     const float* const at = &field_[index(node)];
     if (w_ * (static_cast<S>(*at) + S(1)) <= slope_ * r) return false;
     const Rows rows = rows_around(at, Spline<float>(t[1]), Spline<float>(t[2]));
@@ -264,20 +264,21 @@ class SampledSurface {
     return node[2] * layer_ + node[1] * row_ + node[0];
   }
 
-  /// The steepest slope of the field outside the body. In a node's cell a derivative is a mean of differences
-  /// of coefficients next to each other, times B-splines; so it is no more than the largest of them.
+  /// A bound of the field's slope outside the body. In a node's cell its derivative along an axis is a mean
+  /// of differences of neighbouring coefficients, weighted by B-splines, and no more than the largest.
   [[nodiscard]] S steepest() const {
     const std::array<std::size_t, 3> step{1, row_, layer_};
     float most2 = 0;
     for (std::size_t z = 1; z + 1 < 4 * blocks_[2]; ++z) {
       for (std::size_t y = 1; y + 1 < 4 * blocks_[1]; ++y) {
         for (std::size_t x = 1; x + 1 < 4 * blocks_[0]; ++x) {
+          const float* const node = &field_[index({x, y, z})];
           float slope2 = 0, highest = 0;
           for (std::size_t k = 0; k < 3; ++k) {
             const std::size_t along = step[k], across = step[(k + 1) % 3], up = step[(k + 2) % 3];
             float most = 0;
             for (std::size_t i = 0; i < 9; ++i) {
-              const float* at = &field_[index({x, y, z}) - across - up + i % 3 * across + i / 3 * up];
+              const float* const at = node - across - up + i % 3 * across + i / 3 * up;
               const float before = *(at - along), here = *at, after = *(at + along);
               most = (std::max)({most, std::abs(here - before), std::abs(after - here)});
               highest = (std::max)({highest, before, here, after});

@@ -39,7 +39,7 @@ concept ResolvedTopology = Topology<T> && requires { T::max_points, T::max_besid
 /// What a point of the tool feels.
 template <Real S>
 struct PointContact {
-  std::uint32_t point;  ///< of the tool, ToolPoints::point(point)
+  std::uint32_t point;  ///< of the tool, its point(point)
   bool sticks;          ///< false where it slips or there is no friction
   Vec3<S> position;     ///< object coordinates [m]
   Vec3<S> normal;       ///< of the body, outward

@@ -8,6 +8,7 @@
 #include <palpate/geometry/ellipsoid.hpp>
 #include <palpate/geometry/sphere.hpp>
 #include <support/check.hpp>
+#include <support/counting.hpp>
 #include <support/no_heap.hpp>
 
 #include <doctest/doctest.h>
@@ -42,23 +43,6 @@ std::vector<Vec3<S>> random_points(std::size_t count, S size) {
   for (std::size_t i = 0; i < count; ++i) points.push_back(random_vector<S>(random, size));
   return points;
 }
-
-// A surface that counts how often the walk asks it.
-template <class B>
-struct Counting {
-  using Scalar = typename B::Scalar;
-  B body;
-  std::size_t* asked;
-  [[nodiscard]] SurfacePoint<Scalar> closest(const Vec3<Scalar>& x) const noexcept { return body.closest(x); }
-  [[nodiscard]] Penetration<Scalar> penetration(const Vec3<Scalar>& x) const noexcept {
-    return body.penetration(x);
-  }
-  [[nodiscard]] Scalar reach() const noexcept { return body.reach(); }
-  [[nodiscard]] bool separated(const Vec3<Scalar>& x, Scalar r) const noexcept {
-    ++*asked;
-    return body.separated(x, r);
-  }
-};
 
 // Visits in ascending order, at most once, every point that is inside; returns the number of visits.
 template <Real S, class B>
@@ -137,7 +121,7 @@ TEST_CASE("tool points: 100,000 points cost what touches") {
   const ToolPoints<double> tool(ball, {.contact_area = 1e-4});
   REQUIRE(tool.size() > 99000);
   std::size_t asked = 0;
-  const Counting<Sphere<double>> body{Sphere<double>({.radius = 0.05}), &asked};
+  const test::Counting<Sphere<double>> body{Sphere<double>({.radius = 0.05}), &asked};
   for (const double depth : {-0.1, -1e-4, 1e-5, 1e-4, 1e-3}) {
     CAPTURE(depth);
     Pose<double> X;

@@ -11,6 +11,7 @@
 #include <doctest/doctest.h>
 
 #include <support/check.hpp>
+#include <support/counting.hpp>
 #include <support/no_heap.hpp>
 #include <support/on_half_space.hpp>
 
@@ -18,6 +19,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <numbers>
 #include <random>
 #include <string>
 
@@ -30,9 +32,12 @@ using V = Vec3<double>;
 using Elastic = ElasticContact<double, HalfSpace>;
 constexpr double R = 0.012, spacing = 2e-3, E_plane = half_space_E / (1 - half_space_nu * half_space_nu);
 
+const MeshData<double>& ball() {
+  static const MeshData<double> made = Sphere<double>({.radius = R}).mesh(8000);
+  return made;
+}
 ToolPoints<double> ball_points(double apart, const V& centre_of_mass = V::Zero()) {
-  const TriangleMesh<double> ball(Sphere<double>({.radius = R}).mesh(8000));
-  return ToolPoints<double>(contact_samples(ball, apart),
+  return ToolPoints<double>(contact_samples(TriangleMesh<double>(ball()), apart),
                             {.contact_area = 1e-4, .centre_of_mass = centre_of_mass});
 }
 const AdaptiveTool<double>& tool() {
@@ -40,19 +45,15 @@ const AdaptiveTool<double>& tool() {
   return made;
 }
 
-const Elastic& elastic() {
-  static const Elastic made({.compliance = HalfSpace({.E = half_space_E, .nu = half_space_nu})});
-  return made;
-}
-
 template <class F = Frictionless<double>, class Body = Box<double>>
 auto adaptive(const F& friction = {}, const Body& body = ground()) {
-  return make_solver(body, tool(), elastic(), friction);  // which takes AdaptiveContactPoints
+  const Elastic elastic({.compliance = HalfSpace({.E = half_space_E, .nu = half_space_nu})});
+  return make_solver(body, tool(), elastic, friction);  // which takes AdaptiveContactPoints
 }
+/// One spacing.
 template <class F = Frictionless<double>, class Body = Box<double>>
-OnHalfSpace<F, Body> alone(double apart, const F& friction = {}, const Body& body = ground()) {
-  return OnHalfSpace<F, Body>(
-      {.object = body, .tool = ball_points(apart), .force = elastic(), .friction = friction});
+auto alone(double apart, const F& friction = {}, const Body& body = ground()) {
+  return on_half_space(ball(), apart, friction, body);
 }
 
 /// So deep, and so far aside.
@@ -61,20 +62,6 @@ Pose<double> at(double deep, double aside = 0) {
   X.translation = V(aside, R - deep, 0);
   return X;
 }
-
-/// A ground that counts the points it is asked about.
-struct Counting {
-  using Scalar = double;
-  Box<double> body;
-  std::size_t* asked;
-  [[nodiscard]] SurfacePoint<double> closest(const V& x) const noexcept { return body.closest(x); }
-  [[nodiscard]] Penetration<double> penetration(const V& x) const noexcept {
-    ++*asked;
-    return body.penetration(x);
-  }
-  [[nodiscard]] double reach() const noexcept { return body.reach(); }
-  [[nodiscard]] bool separated(const V& x, double r) const noexcept { return body.separated(x, r); }
-};
 
 }  // namespace
 
@@ -121,12 +108,12 @@ TEST_CASE("adaptive points: from fine to coarse and back no force jumps, and it 
     had_fine |= fine && !coarse, had_both |= fine && coarse, had_coarse |= coarse && !fine;
     before = down[std::size_t(i)] = force;
   }
-  CHECK(most <= 1.4);  // a point that comes in: 1.3 with fine points alone
+  CHECK(most <= 1.4);  // measured: 1.39, where the first point comes in, as with fine points alone
   CHECK(had_fine);
   CHECK(had_both);
   CHECK(had_coarse);
-  for (int i = steps; i >= 20; --i)  // twenty times the tolerance, and what points come in late by
-    CHECK_RELATIVE(solver.tick(at(i * step)).wrench.force.y(), down[std::size_t(i)], 0.004);
+  for (int i = steps; i >= 20; --i)  // five times the tolerance; measured: 1e-4
+    CHECK_RELATIVE(solver.tick(at(i * step)).wrench.force.y(), down[std::size_t(i)], 5e-4);
 }
 
 TEST_CASE("adaptive points: a closed path through both gives no work, and with friction takes some") {
@@ -137,7 +124,7 @@ TEST_CASE("adaptive points: a closed path through both gives no work, and with f
     (void)solver.tick(last);
     double sum = 0;
     for (int i = 1; i <= steps; ++i) {
-      const double t = 2 * 3.14159265358979 * i / steps;
+      const double t = 2 * std::numbers::pi * i / steps;
       Pose<double> X = at(R / 10 * std::sin(2 * t - 1.2) - 2e-4, 2e-3 * std::sin(t));
       if (i == steps) X = last;
       const V force = solver.tick(X).wrench.force;
@@ -149,7 +136,7 @@ TEST_CASE("adaptive points: a closed path through both gives no work, and with f
   };
   double spent = 0, rubbed = 0;
   const double slick = work(adaptive(), spent);
-  CHECK(std::abs(slick) <= 0.002 * spent);  // as one spacing on random paths
+  CHECK(std::abs(slick) <= 1e-4 * spent);  // measured: 1e-6, of a path straight in and out that slides
   CHECK(work(adaptive(CoulombFriction<double>({.mu_static = 0.4, .mu_dynamic = 0.4})), rubbed) < 0);
 }
 
@@ -171,9 +158,9 @@ TEST_CASE("adaptive points: what friction holds goes from the one to the other")
       return force;
     };
     const V force = felt(adaptive(rough)), right = felt(alone(apart, rough));
-    CHECK(right.x() < -0.005 * right.y());
-    CHECK_RELATIVE(force.y(), right.y(), 0.02);
-    CHECK_RELATIVE(force.x(), right.x(), 0.1);  // lost altogether where a contact began anew
+    CHECK(right.x() < -0.15);                    // [N] something is held
+    CHECK_RELATIVE(force.y(), right.y(), 1e-3);  // ten times the tolerance
+    CHECK_RELATIVE(force.x(), right.x(), 0.02);  // measured: 0.6 %; all of it where a contact began anew
   }
 }
 
@@ -191,10 +178,10 @@ TEST_CASE("adaptive points: what the points carry, and the loads, are the force 
     FixedVector<SurfaceLoad<double>, 256> loads;
     solver.state().loads(loads);
     for (const auto& load : loads) of_loads += load.force;
-    torque -= (at(deep, 5e-5) * V::Zero()).cross(force);
-    CHECK((force - result.wrench.force).norm() <= 1e-9 * force.norm());
+    torque -= at(deep, 5e-5).translation.cross(force);                   // about the centre of mass
+    CHECK((force - result.wrench.force).norm() <= 1e-9 * force.norm());  // sums in another order, as the next
     CHECK((torque - result.wrench.torque).norm() <= 1e-9 * R * force.norm());
-    CHECK((of_loads + result.wrench.force).norm() <= 1e-5 * force.norm());  // kept in float
+    CHECK((of_loads + result.wrench.force).norm() <= 1e-6 * force.norm());  // kept in float
     REQUIRE(solver.contacts().size() == 1);
     CHECK((solver.contacts()[0].force - result.wrench.force).norm() <= 1e-9 * force.norm());
     CHECK(solver.contacts()[0].points == solver.state().points().size());
@@ -204,9 +191,9 @@ TEST_CASE("adaptive points: what the points carry, and the loads, are the force 
 
 TEST_CASE("adaptive points: only those are looked at that carry load") {
   std::size_t asked = 0, of_fine = 0, of_coarse = 0;
-  auto solver = adaptive(Frictionless<double>(), Counting{ground(), &asked});
-  auto fine = alone(spacing / 2, Frictionless<double>(), Counting{ground(), &of_fine});
-  auto coarse = alone(spacing, Frictionless<double>(), Counting{ground(), &of_coarse});
+  auto solver = adaptive(Frictionless<double>(), Counting<Box<double>>{ground(), &asked});
+  auto fine = alone(spacing / 2, Frictionless<double>(), Counting<Box<double>>{ground(), &of_fine});
+  auto coarse = alone(spacing, Frictionless<double>(), Counting<Box<double>>{ground(), &of_coarse});
   const auto press = [](auto& each, std::size_t& count, double deep) {
     for (int i = 1; i <= 20; ++i) (void)each.tick(at(deep * i / 20));
     count = 0;

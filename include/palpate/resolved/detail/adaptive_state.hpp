@@ -37,23 +37,20 @@ class AdaptiveState {
   }
   /// When points have been looked for, the fine ones if they went on in the last tick, else the coarse ones.
   void choose(const AdaptiveTool<S>& tool) noexcept {
-    // A contact goes on for longer than it would begin, and begins before it carries load: how many are alike
-    // deep is not quite the same number by fine points and by coarse ones.
+    // A contact goes on for longer than it would begin, and begins before it carries load: n is not quite the
+    // same by fine points and by coarse ones.
     constexpr float fine_begins = 1.08f * Contacts::all_coarse, fine_ends = 1.15f * Contacts::all_coarse,
                     coarse_begins = 0.9f * Contacts::all_fine, coarse_ends = 0.8f * Contacts::all_fine;
     const float per_coarse =
                     static_cast<float>(tool.coarse().size()) / static_cast<float>(tool.fine().size()),
-                n = has_fine_ ? per_coarse * fine_.points_alike_deep() : coarse_.points_alike_deep();
+                n = has_fine_ ? per_coarse * fine_.effective_points() : coarse_.effective_points();
     const S t = static_cast<S>(
         std::clamp((Contacts::all_coarse - n) / (Contacts::all_coarse - Contacts::all_fine), 0.f, 1.f));
     share_ = t * t * (S(3) - S(2) * t);
     const bool had_fine = std::exchange(has_fine_, n < (has_fine_ ? fine_ends : fine_begins));
     const bool had_coarse = std::exchange(has_coarse_, n > (has_coarse_ ? coarse_ends : coarse_begins));
-    if (has_fine_ && !had_fine)
-      fine_.take_over(coarse_, tool.coarse(), tool.fine(), [&](std::uint32_t i) { return tool.fine_at(i); });
-    if (has_coarse_ && !had_coarse)
-      coarse_.take_over(fine_, tool.fine(), tool.coarse(),
-                        [&](std::uint32_t k) { return tool.coarse_at(k); });
+    if (has_fine_ && !had_fine) fine_.take_over(coarse_, tool.coarse(), tool.fine(), tool.fine_at());
+    if (has_coarse_ && !had_coarse) coarse_.take_over(fine_, tool.fine(), tool.coarse(), tool.coarse_at());
     if (!has_fine_ && had_fine) fine_.reset();
     if (!has_coarse_ && had_coarse) coarse_.reset();
   }
@@ -71,7 +68,7 @@ class AdaptiveState {
     add(coarse_, S(1) - share_, 0), add(fine_, share_, tool.coarse().size());
     const bool had = std::exchange(has_contact_, !contacts_.empty());
     if (has_contact_ && !had) ++id;
-    if constexpr (Contacts::max_beside > 0) set_beside({});
+    if constexpr (Contacts::max_beside > 0) set_beside({});  // also of the one that did not go on
   }
 
   [[nodiscard]] std::span<const PointContact<S>> contacts() const noexcept {

@@ -105,12 +105,13 @@ class ResolvedState {
       return rounded_rim_pressure(tool, touching_[inside_[i]], system_.b());
     });
   }
-  /// Of the points that have been found, how many are alike deep.
-  [[nodiscard]] float points_alike_deep() const noexcept { return touching_.alike_deep(); }
+  /// TouchingPoints' of those that have been found.
+  [[nodiscard]] float effective_points() const noexcept { return touching_.effective_number(); }
   /// Before points are looked for: goes on from the last tick of `other`, the same tool at other points, of
-  /// which those that touch in this one have been found; `nearest(i)`: points that have its point i nearest.
+  /// which those that touch in this one have been found; `nearest`: by its points, those to which each is the
+  /// nearest.
   void take_over(const ResolvedState& other, const ToolPoints<S>& its, const ToolPoints<S>& tool,
-                 const auto& nearest) noexcept {
+                 const std::vector<std::vector<std::uint32_t>>& nearest) noexcept {
     touching_.take_over(other.touching_, its, tool, nearest);
     contacts_ = other.contacts_, pose_ = other.pose_, slides_ = other.slides_, strength_ = other.strength_;
     regular_.take_over(other.regular_), beside_.take_over(other.beside_);

@@ -50,19 +50,19 @@ class TouchingPoints {
   }
 
   /// (sum of depths)^2 over the sum of their squares: 3/4 of all under a ball, all under what is flat.
-  [[nodiscard]] float alike_deep() const noexcept {
+  [[nodiscard]] float effective_number() const noexcept {
     float sum = 0;
     for (const TouchingPoint& c : points_) sum += c.depth;
     const float per_norm = sum / norm_of_depths();
     return per_norm * per_norm;
   }
   /// Of points that have been found: what they keep of the last tick, at the same tool's points elsewhere,
-  /// `nearest(i)` for its point i.
+  /// `nearest[i]` for its point i.
   void take_over(const TouchingPoints& other, const ToolPoints<S>& its, const ToolPoints<S>& tool,
-                 const auto& nearest) noexcept {
+                 const std::vector<std::vector<std::uint32_t>>& nearest) noexcept {
     for (std::size_t c = 0; c < other.size(); ++c) {
       const std::uint32_t from = other[c].point;
-      for (const std::uint32_t to : nearest(from)) {
+      for (const std::uint32_t to : nearest[from]) {
         PointMemory& p = memory_[to] = other.memory(c);
         p.tick = tick_;
         p.load *= static_cast<float>(tool.area(to) / its.area(from));

@@ -96,7 +96,8 @@ PALPATE_COMPILED_INLINE TouchParts<MeshTool>::TouchParts(const ElasticBody& body
     : spacing(point_spacing(body, mesh)),
       tool(adaptive_tool(mesh, spacing)),
       object(SharedSurface(body.surface()),
-             {.spacing = sample_spacing(body.surface()->lower(), body.surface()->upper(), spacing / 2)}),
+             {.spacing = sample_spacing(body.surface()->lower(), body.surface()->upper(),
+                                        std::sqrt(tool.fine().contact_area()))}),
       force({.compliance = ResponseCompliance(body.field())}),
       shape(body.field(), body.mesh().data()) {}
 
