@@ -7,6 +7,7 @@
 #include <palpate/law/friction/coulomb.hpp>
 #include <palpate/resolved/contact_samples.hpp>
 #include <palpate/resolved/detail/finite_strain.hpp>
+#include <palpate/resolved/detail/regular_gradient.hpp>
 #include <palpate/resolved/response_compliance.hpp>
 #include <palpate/solver/contact_solver.hpp>
 
@@ -22,6 +23,7 @@
 #include <array>
 #include <memory>
 #include <numbers>
+#include <vector>
 
 using namespace palpate;
 using namespace palpate::test;
@@ -279,7 +281,7 @@ TEST_CASE("finite strain: Hertz's pressure has the strain d/R, and nu turns soft
     float load = 0;
     for (std::size_t i = 0; i < system.size(); ++i) load += q[i], loads.set(i, -q[i] * Vec3<float>::UnitY());
     loads.set(0, loads[0] + load / 200 * across);
-    strain.measure(system, loads, q.data(), r.data(), regular, detail::NoLoadsBeside(0, 0, 0), 0);
+    strain.measure(system, loads, q.data(), r.data(), regular, detail::NoLoadsBeside(0, 0, 0), 0, 0);
     // With friction 0.7 of what it is stiffer by, a surface that is drawn in. Softer by k e under a flat face,
     // half as much again under a ball.
     const double e = a * a / (ball * ball), bounded = e / std::sqrt(1 + e * e),
@@ -291,6 +293,24 @@ TEST_CASE("finite strain: Hertz's pressure has the strain d/R, and nu turns soft
     CHECK_RELATIVE(strain.depth(deep), deep / (1 + 0.75 * ((1 + softer) / (1 + stiffer) - 1)),
                    1e-4);  // 1,257 cells
     CHECK((nu < 0.4) == (strain.depth(deep) > deep));
+    // Less soft by 2/5 of what stretches the surface.
+    detail::FiniteStrain stretched = strain;
+    stretched.measure(system, loads, q.data(), r.data(), regular, detail::NoLoadsBeside(0, 0, 0), 0, 0.1f);
+    CHECK_RELATIVE(1 + stretched.beside(Vec3<float>::UnitY(), 1).y(), (1 + softening) / 1.04f, 1e-6);
+    CHECK_RELATIVE(stretched.depth(deep), deep / (1 + 0.75 * ((1 + softer) / (1 + stiffer) / 1.04 - 1)),
+                   1e-4);  // 1,257 cells
+    // It is measured where w turns and bends the surface, too.
+    detail::VectorList displaced = regular;
+    for (std::size_t i = 0; i < system.size(); ++i) {
+      const Vec3<float>& x = system.foot(i);
+      displaced.set(i, {0.02f * x.x() + 0.05f * x.z(), 0.1f * x.x() + 9 * x.z() * x.z(),
+                        0.01f * x.z() - 0.05f * x.x()});
+    }
+    detail::RegularGradient<true> gradient(system.size());
+    const ToolPoints<double> tool(std::vector<V>{V::Zero()}, {1e-4}, {.contact_area = 1e-4});
+    gradient.measure(system, q.data(), displaced, Vec3<float>(0, 0, 0), detail::NoLoadsBeside(0, 0, 0),
+                     std::array<int, 0>{}, tool);
+    CHECK_RELATIVE(gradient.stretch(), 0.03, 1e-4);  // rounding
     // All has sunk alike, as under a flat face. Where a ball's points have, 4 mm at most, what is less deep is
     // the deeper, and all is as much softer as leaves the force.
     detail::FiniteStrain round = strain;
@@ -299,7 +319,7 @@ TEST_CASE("finite strain: Hertz's pressure has the strain d/R, and nu turns soft
       const float share = system.foot(i).squaredNorm() / (a * a);
       r_of_ball[i] = 0.004f * (1 - share / 2) - system.depth[i];
     }
-    round.measure(system, loads, q.data(), r_of_ball.data(), none, detail::NoLoadsBeside(0, 0, 0), 0);
+    round.measure(system, loads, q.data(), r_of_ball.data(), none, detail::NoLoadsBeside(0, 0, 0), 0, 0);
     const double d_0 = 0.004, s = 0.18 * (1 - 7 * (1 - 2 * nu)) * bounded;
     const auto drawn = [&](double wider) { return 1 + 1.5 * softer + 1.3 * wider * (1 - 0.6 * wider); };
     const auto by_strain = [&](double wider) { return drawn(wider) / (1 + stiffer); };
@@ -312,7 +332,7 @@ TEST_CASE("finite strain: Hertz's pressure has the strain d/R, and nu turns soft
     }
     // Where friction holds the surface by three quarters it is narrower by a quarter of that, wider by all.
     detail::FiniteStrain held = strain;
-    held.measure(system, loads, q.data(), r_of_ball.data(), none, detail::NoLoadsBeside(0, 0, 0), 0.75f);
+    held.measure(system, loads, q.data(), r_of_ball.data(), none, detail::NoLoadsBeside(0, 0, 0), 0.75f, 0);
     const double s_held = nu < 0.4 ? s / 4 : s, d = d_0 / 2;
     CHECK(std::abs(held.depth(static_cast<float>(d)) - (d + s_held * d_0 * 0.75) / by_strain(s_held)) <=
           0.05 * std::abs(c) * d_0);
@@ -355,7 +375,7 @@ TEST_CASE("finite strain: Hertz's pressure has the strain d/R, and nu turns soft
     detail::FiniteStrain far = strain;
     detail::VectorList by_two_radii = regular;
     for (std::size_t i = 0; i < system.size(); ++i) by_two_radii.set(i, -2 * a * Vec3<float>::UnitY());
-    far.measure(system, loads, q.data(), r.data(), by_two_radii, detail::NoLoadsBeside(0, 0, 0), 0);
+    far.measure(system, loads, q.data(), r.data(), by_two_radii, detail::NoLoadsBeside(0, 0, 0), 0, 0);
     const Vec3<float> half = -0.5f * a * across / 200;
     CHECK((far.shift() - half).norm() <= 0.02f * half.norm());  // a: 1,257 cells
     detail::VectorList moved;

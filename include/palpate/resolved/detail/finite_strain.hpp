@@ -41,6 +41,11 @@ namespace palpate::detail {
 /// holds the surface, and where cones lean (friction_cones.hpp), 0.7 X: chosen on balls, mu = 0.1 and 1, nu
 /// from 0 to 0.4, which have 0.66 to 0.78; flat cylinders have 0.55.
 ///
+/// A surface that W P stretches, by e_w, the sum of both ways (regular_gradient.hpp), is stiffer: at nu = 1/2
+/// a half-space that is stretched alike has 1 + e_w/4 times the force [green1952], and as e_w grows with the
+/// load, by reciprocity the regular part is more for it. With a near field's energy 2/5 q d under a ball both
+/// make 2/5 e_w of the force (3/8 under a flat face, 5/12 under a cone): 1 + n k e is divided by that, too.
+///
 /// A contact is wider than a linear one at nu = 1/2, for the surface rises beside what is pressed in most;
 /// narrower where it is drawn in. What is less deep than d_0 is deeper by r than that:
 ///
@@ -94,9 +99,9 @@ class FiniteStrain {
   }
   /// After a solve for the loads P, q along the directions of pressing: r, displacements along these less the
   /// depths; w, the regular part, and `given`, by others' loads, both of which are not K P [m]; how firmly
-  /// friction held the surface in the last tick (reaction.hpp).
+  /// friction held the surface in the last tick (reaction.hpp), and e_w.
   void measure(const PointSystem& system, const VectorList& P, const float* q, const float* r,
-               const VectorList& w, const auto& given, float held) noexcept {
+               const VectorList& w, const auto& given, float held, float stretch) noexcept {
     const V zero(0.f);
     V loads{}, pressures{}, sunks{}, rests{}, nears{}, nearest{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
@@ -115,7 +120,8 @@ class FiniteStrain {
     const float wider = (std::max)(wider_by_ * bounded * (std::min)(5 * fall, 1.f), -0.15f);
     wider_ = wider < 0 ? (1 - held) * wider : wider;
     const float power = (1 + fall) / (1 - (std::min)(fall, 0.5f)),
-                softer = power * softening_ * bounded + (1 + 1.5f * fall) * wider_ * (1 - 0.6f * wider_);
+                by_width = (1 + 1.5f * fall) * wider_ * (1 - 0.6f * wider_),
+                softer = (1 + power * softening_ * bounded + by_width) / (1 + 0.4f * stretch) - 1;
     const float stiffer = (system.has_friction() ? 0.7f : 1.f) * drawn_in_ * (std::min)(root, max_root);
     deepest_share_ = system.deepest() > 0 ? (std::min)(deepest / system.deepest(), 2.f) : 0;
     take_depth(system.deepest());

@@ -35,6 +35,8 @@ namespace palpate::detail {
 /// The points that carry load take that over, with its sum and its moment: q_i (b + D.r_i) (LoadFit). It is
 /// what turns a tool that presses on a curved body where v has not come to w. Without it an ellipsoid on a
 /// lying cylinder has 4 % of error in its torque, with it 1 % (finite elements). On a flat face it is 0.
+///
+/// And the strain by which w stretches the surface there, the sum of both ways, by regression as well.
 template <bool has_friction>
 class RegularGradient {
  public:
@@ -53,8 +55,11 @@ class RegularGradient {
     const LoadFit fit(system, q);
     if (!fit.has_load()) return;
     const SimdVec3<V> known = each<V>(v);
+    const auto displaced = [&](std::size_t i)
+                               PALPATE_INLINE_LAMBDA { return SimdVec3<V>(w.load(i) + given.load(i)); };
+    stretch_ = clamp(fit.linear(displaced).by_x.trace(), -most_stretch, most_stretch);
     slope_ = fit.slope([&](std::size_t i) PALPATE_INLINE_LAMBDA {
-      const SimdVec3<V> n = system.normals().load(i), all = w.load(i) + given.load(i);
+      const SimdVec3<V> n = system.normals().load(i), all = displaced(i);
       if constexpr (!has_friction) return dot(n, all - known);
       const SimdVec3<V> m = system.directions().load(i);
       return dot(n, m) * dot(m, all);
@@ -64,13 +69,15 @@ class RegularGradient {
     else if (!system.is_flat())
       measure_turn(system, q, w, known, given, touching, tool, fit);
   }
-  void forget() noexcept { slope_.setZero(), tilt_ = mean_ = {}, less_ = 0; }
+  void forget() noexcept { slope_.setZero(), stretch_ = 0, tilt_ = mean_ = {}, less_ = 0; }
   /// The slope along the surface, by which the body turns.
   [[nodiscard]] const Vec3<float>& slope() const noexcept { return slope_; }
   /// The same as far as it makes an arc of the body's path (body_shift.hpp): none with friction.
   [[nodiscard]] Vec3<float> arc() const noexcept {
     return has_friction ? Vec3<float>(Vec3<float>::Zero()) : slope_;
   }
+  /// The strain of the surface, between -0.2 and 0.2.
+  [[nodiscard]] float stretch() const noexcept { return stretch_; }
   /// What points i .. on feel less than q, over q, along n; and along the surface. Without friction.
   [[nodiscard]] PALPATE_INLINE SimdVec3<V> less(const PointSystem& system, std::size_t i,
                                                 const SimdVec3<V>& n) const noexcept {
@@ -96,7 +103,10 @@ class RegularGradient {
     tilt_ = each(fit.tilt(moment)), mean_ = each(fit.mean());
   }
 
+  static constexpr float most_stretch = 0.2f;  // twice that of the finite element cases
+
   Vec3<float> slope_ = Vec3<float>::Zero();
+  float stretch_ = 0;
   SimdVec3<V> tilt_{}, mean_{};
   V less_{};
   VectorList sideways_;  // q_i (1 - m_i m_i^T) (w_i - v) / |N_i|

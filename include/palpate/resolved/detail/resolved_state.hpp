@@ -178,7 +178,7 @@ class ResolvedState {
       left_out |= solve_inside(force, friction, tolerance);
       if constexpr (Strain::active)  // of second order, as sway is, of which it knows nothing
         strain_.measure(system_, result_.load, pressure_.q.data(), pressure_.r.data(), regular_.response(),
-                        beside_, reaction_.held());
+                        beside_, reaction_.held(), gradient_.stretch());
       const bool again = Strain::active && first && round == 0;  // the strain was not known
       if (round == most_rounds || !take_in(force, tool, tolerance, again, left_out)) break;
     }
