@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 // What changes linearly over a contact: its gradient by regression, and loads with a given moment.
 #include <palpate/resolved/detail/load_fit.hpp>
+#include <palpate/resolved/detail/loads_beside.hpp>
+#include <palpate/resolved/detail/regular_gradient.hpp>
 
 #include <doctest/doctest.h>
 
 #include <support/check.hpp>
 
+#include <array>
 #include <cmath>
+#include <vector>
 
 using namespace palpate;
 using namespace palpate::test;
@@ -61,6 +65,28 @@ TEST_CASE("the slope over a contact's loads is the function's, less what few poi
   for (const V& v : {four, many}) CHECK(std::abs(v.y()) <= 1e-4);
   // Loads whose squares are no floats: as others.
   CHECK((slope_of(Loaded(8, 1e-25f)) - many).norm() <= 1e-4 * many.norm());
+}
+
+TEST_CASE("the stretch of a contact's surface is measured where w turns and bends it, too, and is bounded") {
+  const Loaded contact(8);
+  const auto stretch = [&](float size) {
+    detail::VectorList w;
+    w.resize(contact.system.stride());
+    for (std::size_t i = 0; i < contact.system.size(); ++i) {
+      const V& x = contact.system.foot(i);
+      w.set(i, size * V(0.02f * x.x() + 0.05f * x.z(), 0.1f * x.x() + 9 * x.z() * x.z(),
+                        0.01f * x.z() - 0.05f * x.x()));
+    }
+    detail::RegularGradient<true> gradient(contact.system.size());
+    const ToolPoints<double> tool(std::vector<Vec3<double>>{{0, 0, 0}}, {1e-4}, {.contact_area = 1e-4});
+    gradient.measure(contact.system, contact.q.data(), w, V(0, 0, 0), detail::NoLoadsBeside(0, 0, 0),
+                     std::array<int, 0>{}, tool);
+    return gradient.stretch();
+  };
+  const double own = std::pow(4 * 204. / (8 * 36 * 36), 2) / 12;  // as above, variances and tolerance, too
+  CHECK_RELATIVE(stretch(1), 0.02 * (35. / 9) / (35. / 9 + own) + 0.01 * 5.25 / (5.25 + own), 1e-4);
+  CHECK(stretch(100) == 0.2f);
+  CHECK(stretch(-100) == -0.2f);
 }
 
 TEST_CASE("loads that change linearly over a contact have the moment asked for and no sum") {

@@ -41,10 +41,11 @@ namespace palpate::detail {
 /// holds the surface, and where cones lean (friction_cones.hpp), 0.7 X: chosen on balls, mu = 0.1 and 1, nu
 /// from 0 to 0.4, which have 0.66 to 0.78; flat cylinders have 0.55.
 ///
-/// A surface that W P stretches, by e_w, the sum of both ways (regular_gradient.hpp), is stiffer: at nu = 1/2
-/// a half-space that is stretched alike has 1 + e_w/4 times the force [green1952], and as e_w grows with the
-/// load, by reciprocity the regular part is more for it. With a near field's energy 2/5 q d under a ball both
-/// make 2/5 e_w of the force (3/8 under a flat face, 5/12 under a cone): 1 + n k e is divided by that, too.
+/// A surface that W P stretches, by e_w, the sum of both ways (regular_gradient.hpp), is stiffer: at nu =
+/// 1/2 a half-space that is stretched alike has 1 + e_w/4 times the force [green1952]. As e_w grows with the
+/// load, by reciprocity W P is changed as well; with both the force is larger by 2/5 e_w under a ball (3/8
+/// under a flat face, 5/12 under a cone). So 1 + c below is divided by 1 + 2/5 e_w; for nu < 1/2, too, where
+/// that is not derived.
 ///
 /// A contact is wider than a linear one at nu = 1/2, for the surface rises beside what is pressed in most;
 /// narrower where it is drawn in. What is less deep than d_0 is deeper by r than that:

@@ -36,7 +36,8 @@ namespace palpate::detail {
 /// what turns a tool that presses on a curved body where v has not come to w. Without it an ellipsoid on a
 /// lying cylinder has 4 % of error in its torque, with it 1 % (finite elements). On a flat face it is 0.
 ///
-/// And the strain by which w stretches the surface there, the sum of both ways, by regression as well.
+/// *Stretch*: e_w, the strain of the surface by w, the sum of both ways across m, by regression as well. It
+/// is felt in the next tick (finite_strain.hpp).
 template <bool has_friction>
 class RegularGradient {
  public:
@@ -76,7 +77,7 @@ class RegularGradient {
   [[nodiscard]] Vec3<float> arc() const noexcept {
     return has_friction ? Vec3<float>(Vec3<float>::Zero()) : slope_;
   }
-  /// The strain of the surface, between -0.2 and 0.2.
+  /// e_w, between -0.2 and 0.2.
   [[nodiscard]] float stretch() const noexcept { return stretch_; }
   /// What points i .. on feel less than q, over q, along n; and along the surface. Without friction.
   [[nodiscard]] PALPATE_INLINE SimdVec3<V> less(const PointSystem& system, std::size_t i,
