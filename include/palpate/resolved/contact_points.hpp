@@ -36,7 +36,8 @@ inline constexpr bool is_shipped_topology<ContactPoints<N, Beside>> = true;
 template <class T>
 concept ResolvedTopology = Topology<T> && requires { T::max_points, T::max_beside; };
 
-/// What a point of the tool feels.
+/// What a point of the tool feels. With friction on a response field the wrench has a torque besides that of
+/// these forces, at most some percent of it: tractions act beneath the points (docs/resolved.md).
 template <Real S>
 struct PointContact {
   std::uint32_t point;  ///< of the tool, its point(point)

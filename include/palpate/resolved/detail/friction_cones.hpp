@@ -9,6 +9,7 @@
 #include <palpate/resolved/detail/friction_problem.hpp>
 #include <palpate/resolved/detail/load_fit.hpp>
 #include <palpate/resolved/detail/point_system.hpp>
+#include <palpate/resolved/detail/traction_depth.hpp>
 #include <palpate/resolved/detail/twist_stiffening.hpp>
 #include <palpate/resolved/detail/vector_list.hpp>
 
@@ -54,7 +55,8 @@ class FrictionCones {
   using V = VectorList::V;
   FrictionCones(double nu, std::size_t points)
       : lean_(static_cast<float>((std::min)(2 * (1 - 2 * nu), 1.))),
-        strain_across_(static_cast<float>(-2 * (1 - 2 * nu) * std::numbers::pi / 3)) {
+        strain_across_(static_cast<float>(-2 * (1 - 2 * nu) * std::numbers::pi / 3)),
+        traction_depth_(nu) {
     axes_.resize(AlignedList<float>::padded(points));
     outward.resize(AlignedList<float>::padded(points));
   }
@@ -73,7 +75,7 @@ class FrictionCones {
     else
       slope.measure(system, fit, origin);
     SimdVec3<V> slopes{};
-    V all{};
+    V all{}, pressed{};
     const float mu = (std::min)(lists.mu, 1.f);
     const V lift_per_h2(passes * mu * mu / 2);
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
@@ -83,10 +85,11 @@ class FrictionCones {
       const V most = V(rim_slope) * inverse_sqrt((max)(dot(steep, steep), V(tiny)));
       const SimdVec3<V> h = (min)(most, V(1.f)) * steep;
       axes_.store(i, h);
-      slopes += q * h, all += q;
+      slopes += q * h, all += q, pressed += q * q / V(system.areas() + i);
       limit_per_mu(cosine, V(passes) * q / V(system.areas() + i), lift_per_h2).copy_to(&lists.per_mu[i]);
     }
     twist.measure(system, loads, fit, axes_, lists.anchor);
+    traction_depth_.measure(fit, reduce(pressed));
     const Vec3<float> mean = sum_of(slopes) / (std::max)(reduce(all), tiny);
     const auto turned = slope.over(origin, lean_ * mean + g);
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
@@ -96,6 +99,12 @@ class FrictionCones {
   }
   /// c
   [[nodiscard]] const VectorList& axes(const PointSystem& /*system*/) const noexcept { return axes_; }
+  /// TractionDepth's: where the tool turns, and of tractions, their sum t.
+  [[nodiscard]] Vec3<float> moved(const Mat3<float>& turn) const noexcept {
+    return traction_depth_.moved(turn);
+  }
+  [[nodiscard]] Vec3<float> couple(const Vec3<float>& t) const noexcept { return traction_depth_.couple(t); }
+  void forget() noexcept { slope.forget(), traction_depth_.forget(); }
 
  private:
   static constexpr float rim_slope = 0.75f, rim = 0.8f;  // and its cosine
@@ -112,6 +121,7 @@ class FrictionCones {
 
   float lean_, strain_across_;  // p/(6 mu) = 2 pi/3 q/A
   VectorList axes_;
+  TractionDepth traction_depth_;
 };
 
 /// Of a body whose response is linear: s = 1, c = m + n_t; m itself where the body is flat.
@@ -136,6 +146,9 @@ class LinearCones {
   [[nodiscard]] const VectorList& axes(const PointSystem& system) const noexcept {
     return slope.is_zero() ? system.directions() : axes_;
   }
+  [[nodiscard]] static Vec3<float> moved(const Mat3<float>&) noexcept { return Vec3<float>::Zero(); }
+  [[nodiscard]] static Vec3<float> couple(const Vec3<float>&) noexcept { return Vec3<float>::Zero(); }
+  void forget() noexcept { slope.forget(); }
 
  private:
   VectorList axes_;

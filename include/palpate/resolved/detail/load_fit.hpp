@@ -40,7 +40,8 @@ class LoadFit {
     }
     load_ = reduce(loads);
     if (!has_load()) return;
-    mean_ = sum_of(xs) / load_, m_ = sum_of(ms).normalized();
+    const Vec3<float> pressing = sum_of(ms) / load_;
+    mean_ = sum_of(xs) / load_, m_ = pressing.normalized(), one_sided_ = pressing.norm();
     const V per_load(1 / load_);
     V areas{}, shares2{};
     SimdVec3<V> squares{}, products{};
@@ -65,6 +66,8 @@ class LoadFit {
   [[nodiscard]] float load() const noexcept { return load_; }
   [[nodiscard]] const Vec3<float>& mean() const noexcept { return mean_; }
   [[nodiscard]] const Vec3<float>& direction() const noexcept { return m_; }  ///< m
+  /// 1 where all points press the same way, 0 where they do from two sides, and m is nothing.
+  [[nodiscard]] float one_sided() const noexcept { return one_sided_; }
   /// As many points as carry alike: (sum q)^2/sum q^2.
   [[nodiscard]] float alike() const noexcept { return alike_; }
   /// As many as under a ball whose contact is as wide as this one where it is narrow: 40 pi/9 l/A, with l the
@@ -76,6 +79,8 @@ class LoadFit {
     const float least = (sum - std::sqrt((std::max)(sum * sum - 4 * product, 0.f))) / 2;
     return 40 * std::numbers::pi_v<float> / 9 * least;
   }
+  /// Variance of r by load, without cells' own.
+  [[nodiscard]] const Mat3<float>& spread() const noexcept { return spread_; }
   /// r of points i .. on.
   [[nodiscard]] PALPATE_INLINE SimdVec3<V> from_mean(std::size_t i) const noexcept {
     return across(each(m_), system_.feet().load(i) - each(mean_));
@@ -115,7 +120,7 @@ class LoadFit {
  private:
   const PointSystem& system_;
   const float* q_;
-  float load_ = 0, alike_ = 0, area_ = 0;
+  float load_ = 0, one_sided_ = 0, alike_ = 0, area_ = 0;
   Vec3<float> mean_ = Vec3<float>::Zero(), m_ = Vec3<float>::Zero();
   Mat3<float> spread_ = Mat3<float>::Zero(), per_spread_ = Mat3<float>::Zero();
 };

@@ -64,20 +64,22 @@ class Reaction<true> {
       const auto sticks = t2 < V(slips_from) * limit2, holds = sticks && V(&result.anchored[i]) > zero;
       const SimdVec3<V> a = result.anchor.load(i),
                         kept{select(holds, a.x, u.x), select(holds, a.y, u.y), select(holds, a.z, u.z)};
-      anchor_.store(i, across(system.directions().load(i), given.load(i) + kept + all));
+      const SimdVec3<V> m = system.directions().load(i);
+      anchor_.store(i, given.load(i) + all + kept + dot(m, u - kept) * m);
       select(sticks, one, zero).copy_to(&sticks_[i]);
       total += qi, sticking += select(sticks, qi, zero);
       rubbed += qi * select(sticks, t2 / (max)(limit2, tiny), one);
       sum += t, sizes += t2 * inverse_sqrt((max)(t2, tiny));
     }
+    tractions_ = sum_of(sum);
     total_ = reduce(total), sticking_ = reduce(sticking);
     held_ = total_ > 0 ? 1 - reduce(rubbed) / total_ : 1;
     const float size = reduce(sizes);
     // At a first touch loads are so small that their squares vanish, and sizes with them.
-    const float same = size > 0 ? (std::min)((sum_of(sum) / size).squaredNorm(), 1.f) : 0;
+    const float same = size > 0 ? (std::min)((tractions_ / size).squaredNorm(), 1.f) : 0;
     passes_ += (same - passes_) / 8;
   }
-  void forget() noexcept { held_ = 1, passes_ = 0; }
+  void forget() noexcept { held_ = 1, passes_ = 0, tractions_.setZero(); }
 
   [[nodiscard]] static Vec3<float> felt(const FrictionLists& result, std::size_t i) noexcept {
     return result.load[i];
@@ -87,6 +89,8 @@ class Reaction<true> {
   /// Sums of normal loads: of all points, and of those that stick.
   [[nodiscard]] float total() const noexcept { return total_; }
   [[nodiscard]] float sticking() const noexcept { return sticking_; }
+  /// Sum of what friction exerts.
+  [[nodiscard]] const Vec3<float>& tractions() const noexcept { return tractions_; }
   /// How firmly friction holds the contact: mean by load of 1 - (t/limit)^2; 1 as it begins.
   [[nodiscard]] float held() const noexcept { return held_; }
   /// How far all tractions point the same way, |sum t|^2/(sum |t|)^2: 1 where a tool slides on. Mean of some
@@ -96,6 +100,7 @@ class Reaction<true> {
  private:
   VectorList anchor_;
   AlignedList<float> sticks_;  // 1, or 0
+  Vec3<float> tractions_ = Vec3<float>::Zero();
   float total_ = 0, sticking_ = 0, held_ = 1, passes_ = 0;
 };
 

@@ -65,6 +65,12 @@ class ResolvedState {
   [[nodiscard]] std::span<const PointContact<S>> contacts() const noexcept {
     return {contacts_.begin(), contacts_.size()};
   }
+  /// What the tool feels besides forces at these points [N m].
+  [[nodiscard]] Vec3<S> couple() const noexcept
+    requires(has_friction)
+  {
+    return -per_load_ * (reaction_.held() * cones_.couple(reaction_.tractions())).template cast<S>();
+  }
   /// The last tick's loads on the body, as many as the list has room for.
   void loads(auto& out) const noexcept {
     out.clear();
@@ -157,12 +163,7 @@ class ResolvedState {
     const float tolerance = static_cast<float>(force.params().tolerance) * touching_.norm_of_depths();
     const Vec3<S>& x = tool.point(touching_[0].point);
     const float moved = first ? 0.f : static_cast<float>((X * x - before * x).norm());
-    if constexpr (has_friction)  // those that stick go with the tool
-      for (std::size_t c = 0; c < touching_.size(); ++c)
-        if (PointMemory& p = touching_.memory(c); p.loaded) {
-          const Vec3<S>& at = tool.point(touching_[c].point);
-          p.anchor += Vec3<S>(X * at - before * at).template cast<float>();
-        }
+    if constexpr (has_friction) touching_.carry(tool, before, X, reaction_.held(), cones_);
     inside_.clear(), strain_.take_depth(system_.deepest());
     // First those that carry load or came near to it.
     for (std::uint32_t c = 0; c < touching_.size(); ++c) {
@@ -200,7 +201,7 @@ class ResolvedState {
   void forget() noexcept {
     slides_ = false, strength_ = {}, carried_.clear(origin()), sway_.forget();
     shift_.forget(), gradient_.forget(), beside_.drop();
-    if constexpr (has_friction) cones_.slope.forget(), reaction_.forget(), result_.step = 0;
+    if constexpr (has_friction) cones_.forget(), reaction_.forget(), result_.step = 0;
     if constexpr (Strain::active) strain_.forget(), regular_.take_in();
   }
   [[nodiscard]] const Vec3<S>& origin() const noexcept { return touching_.origin(); }
@@ -351,8 +352,9 @@ class ResolvedState {
       if constexpr (has_friction) {
         p.sticks = reaction_.sticks(i), p.anchor = reaction_.anchor(i);
         const Vec3<float> m = system_.direction(i);
+        const Vec3<float> a = p.anchor - m.dot(p.anchor) * m;
         carried_.add(at.point / static_cast<std::uint32_t>(batch_size), at.x, q,
-                     beside_.own(shift_.own(p.anchor, m, at.shifted), m), m,
+                     beside_.own(shift_.own(a, m, at.shifted), m), m,
                      static_cast<float>(tool.area(at.point)));
       }
       contacts_.push_back({at.point, p.sticks, pose_ * tool.point(at.point), -at.m.template cast<S>(),

@@ -27,7 +27,9 @@ struct PointMemory {
   Vec3<float> load = Vec3<float>::Zero();    ///< P on the body [m^2]
   Vec3<float> u = Vec3<float>::Zero();       ///< displacement [m]
   Vec3<float> load_step = load, u_step = u;  ///< what the tick changed
-  Vec3<float> anchor = Vec3<float>::Zero();  ///< where it holds the surface [m]
+  /// Where it holds the surface; along the direction of pressing what the surface is displaced by, for that
+  /// turns as the contact moves on a curved body [m].
+  Vec3<float> anchor = Vec3<float>::Zero();
 
   /// Is beneath the surface in tick `now`.
   void touch(std::uint32_t now) noexcept {

@@ -99,6 +99,18 @@ class TouchingPoints {
     }
     return deepest;
   }
+  /// Where loaded points hold the surface goes with the tool from one pose to the other, and besides by a
+  /// share of what `cones` say of its turn.
+  void carry(const ToolPoints<S>& tool, const Pose<S>& from, const Pose<S>& to, float share,
+             const auto& cones) noexcept {
+    const Mat3<float> turn = (to.rotation * from.rotation.transpose()).template cast<float>();
+    const Vec3<float> besides = share * cones.moved(turn);
+    const Mat3<S> turned = to.rotation - from.rotation;
+    const Vec3<S> moved = to.translation - from.translation + besides.template cast<S>();
+    for (const TouchingPoint& c : points_)
+      if (PointMemory& p = memory_[c.point]; p.loaded)
+        p.anchor += Vec3<S>(turned * tool.point(c.point) + moved).template cast<float>();
+  }
   /// After the last add(), where one has returned more than 0.
   void press_beside_edges(const ContactSurface auto& object, const ToolPoints<S>& tool,
                           PointSystem& system) noexcept {

@@ -65,7 +65,7 @@ class TwistStiffening {
       const SimdVec3<V> r = system.feet().load(i) - mean;
       const V r2 = dot(r, r), w = V(q + i) * (max)(near - r2, V(0.f));
       turns += w * dot(slopes.load(i), r), spreads += w * r2;
-      drawn += V(q + i) * dot(anchors.load(i), r);
+      drawn += V(q + i) * dot(across(system.directions().load(i), anchors.load(i)), r);
     }
     const float turn = (std::max)(reduce(turns), 0.f), spread = reduce(spreads);
     if (!(spread > 0)) return;

@@ -96,6 +96,7 @@ class ResolvedCollector {
       work += fn * c.depth;
       ++out.points;
     }
+    if constexpr (State::has_friction && std::same_as<Acting, AtContact>) wrench.torque += state.couple();
     out.id = state.id;
     out.area = static_cast<S>(state.area(tool));
     out.mode = !State::has_friction ? ContactMode::frictionless
