@@ -428,59 +428,17 @@ TEST_CASE("a ball that sticks, pushed aside at one depth and back at another, gi
   }
 }
 
-TEST_CASE(
-    "a ball that sticks: torque of a drag within 6 % of finite elements', and what a roll takes by it") {
-  // ball_stuck as above: 62.70 N mm about the ball's middle, two meshes differ by 1 %. Measured: 4.5 % less,
-  // 6.4 % where tractions act at the points.
-  auto dragged = sticking_ball(), rolled = dragged;
-  const auto ticks = [](auto& solver, double aside, double angle, int count) {
-    Wrench<double> felt;
-    for (int i = 1; i <= count; ++i) {
-      Pose<double> X = at(aside * i / count, 0.094);
-      X.rotation = Eigen::AngleAxisd(angle * i / count, V::UnitZ()).toRotationMatrix();
-      felt = solver.tick(X).wrench;
-    }
-    return felt;
-  };
-  for (auto* solver : {&dragged, &rolled})
-    for (int i = 1; i <= 120; ++i) (void)solver->tick(at(0, 0.1 - 5e-5 * i));
-  const Wrench<double> before = ticks(rolled, 0, 0, 20);  // about the pole, where the tool's frame is
-  const Wrench<double> drag = ticks(dragged, 0.0005, 0, 20);
-  const double force = drag.force.x() - before.force.x(), torque = drag.torque.z() - before.torque.z();
-  CHECK_RELATIVE(-R * force - torque, 0.06270, 0.06);
-  // A drag's torque and a roll's force are one derivative of the energy. Measured: 0.4 % apart.
-  const double roll = ticks(rolled, 0, 0.01, 20).force.x() - before.force.x();
-  CHECK_RELATIVE(roll / 0.01, torque / 0.0005, 0.03);
-}
-
-TEST_CASE(
-    "a ball that sticks to a sphere, rolled: the surface stays where it is while the contact moves on") {
-  // A roll about the pole of the contact takes what a drag's torque about it says, one derivative of the
-  // energy; to 2 % on a flat body. Here the contact moves over the sphere, and its direction of pressing turns
-  // by 0.43 of the roll. Measured: 0.71 of it, for points are put back by the mean of what they hold, not each
-  // by its own; -1.03 of it if an anchor has no part along the direction of pressing.
-  constexpr double deep = 0.002;
-  const V pole(0, 0.02 - deep, 0);
-  auto dragged = ball_on(10, Sphere<double>({.radius = 0.02}));
-  const auto felt = [&](auto& solver, double aside, double angle) {
-    Pose<double> X;
-    X.rotation = Eigen::AngleAxisd(angle, V::UnitZ()).toRotationMatrix();
-    const V at = pole + aside * V::UnitX();
-    X.translation = at + X.rotation * V(0, R, 0);
-    Wrench<double> wrench = solver.tick(X).wrench;
-    wrench.torque += (X.translation - at).cross(wrench.force);
-    return wrench;
-  };
-  for (int i = 100; i >= 1; --i) (void)dragged.tick(at(0, pole.y() + R + deep * i / 100));
-  Wrench<double> before;
-  for (int i = 0; i < 20; ++i) before = felt(dragged, 0, 0);
-  auto rolled = dragged;
-  Wrench<double> drag, roll;
-  for (int i = 1; i <= 20; ++i) drag = felt(dragged, 5e-6 * i, 0), roll = felt(rolled, 0, 5e-4 * i);
-  const double torque = (drag.torque.z() - before.torque.z()) / 1e-4,
-               force = (roll.force.x() - before.force.x()) / 0.01;
-  CHECK(force > 0.65 * torque);
-  CHECK(force < torque);
+TEST_CASE("a ball that sticks in a block: torque of a drag within 3 % of finite elements'") {
+  // ball_stuck as above: 62.70 N mm about the ball's middle, two meshes differ by 1 %. Measured: 2.0 % less,
+  // 3.9 % where tractions act at the points.
+  auto solver = sticking_ball();
+  for (int i = 1; i <= 120; ++i) (void)solver.tick(at(0, 0.1 - 5e-5 * i));
+  const Wrench<double> before = solver.tick(at(0, 0.094)).wrench;
+  Wrench<double> drag;
+  for (int i = 1; i <= 20; ++i) drag = solver.tick(at(2.5e-5 * i, 0.094)).wrench;
+  // The pose is the pole's.
+  const double torque = -R * (drag.force.x() - before.force.x()) - (drag.torque.z() - before.torque.z());
+  CHECK_RELATIVE(torque, 0.06270, 0.03);
 }
 
 TEST_CASE("a ball that sticks, dragged and rolled round, gives the hand nothing") {
