@@ -65,6 +65,7 @@ class Reaction<true> {
       const SimdVec3<V> a = result.anchor.load(i),
                         kept{select(holds, a.x, u.x), select(holds, a.y, u.y), select(holds, a.z, u.z)};
       const SimdVec3<V> m = system.directions().load(i);
+      // Along m the surface's own: as m turns on with the contact, it comes to lie partly across.
       anchor_.store(i, given.load(i) + all + kept + dot(m, u - kept) * m);
       select(sticks, one, zero).copy_to(&sticks_[i]);
       total += qi, sticking += select(sticks, qi, zero);
