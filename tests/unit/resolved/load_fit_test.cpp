@@ -116,6 +116,24 @@ TEST_CASE("a surface is flat to a milliradian") {
   }
 }
 
+TEST_CASE("points that press from two sides have no direction of pressing in the mean") {
+  detail::PointSystem system(most, 0.02f, true);
+  AlignedList<float> q;
+  q.resize(AlignedList<float>::padded(most));
+  system.begin_tick();
+  system.clear();
+  for (const float side : {-1.f, 1.f}) {
+    const V x(0, 0.1f * side, 0), n = -side * V::UnitY();
+    system.touch(1e-3f, 1e-9f, 1e-9f * x, 1e-9f * n);
+    system.add(x, n, 1e-3f, cell);
+  }
+  system.build();
+  q[0] = q[1] = 1e-9f;
+  CHECK(detail::LoadFit(system, q.data()).one_sided() == 0);  // both directions alike, so they cancel out
+  const Loaded from_one(8);
+  CHECK_RELATIVE(detail::LoadFit(from_one.system, from_one.q.data()).one_sided(), 1, 1e-6);  // float
+}
+
 TEST_CASE("without load there is nothing to fit") {
   Loaded contact(2);
   for (std::size_t i = 0; i < 4; ++i) contact.q[i] = 0;

@@ -33,7 +33,7 @@ using Vector6 = Eigen::Matrix<double, 6, 1>;
 const CoulombFriction<double> firm({.mu_static = 20, .mu_dynamic = 20});
 
 /// A tool pressed `deep` along `in`, to where its origin is at `origin`; about the pole of the contact.
-struct Press {
+struct Approach {
   V pole, origin, in;
   double deep;
 };
@@ -41,7 +41,7 @@ struct Press {
 /// Of K_ij - K_ji, over the root of K_ii K_jj, the largest where not both are turns: these differ by the
 /// torque itself. K: minus force and torque about the pole over translation and turn about it.
 template <class Solver>
-double asymmetry(Solver solver, const Press& press) {
+double asymmetry(Solver solver, const Approach& press) {
   const auto tick = [&press](Solver& s, const V& moved, const V& turned, double deep) {
     Pose<double> X;
     if (const double angle = turned.norm(); angle > 0)

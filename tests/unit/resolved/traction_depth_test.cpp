@@ -32,11 +32,10 @@ class Pressed {
                      q = load_per_area(x, z) * width * width;
         if (!(q > 0)) continue;
         q_[system_.size()] = float(q);
-        pressed_ += float(q * q / (width * width));
         system_.add(V(float(x), -1e-3f, float(z)), -V::UnitY(), 1e-3f, float(width * width));
       }
     system_.build();
-    depth_.measure(detail::LoadFit(system_, q_.data()), pressed_);
+    depth_.measure(detail::LoadFit(system_, q_.data()));
   }
   [[nodiscard]] const detail::TractionDepth& depth() const { return depth_; }
   /// l along x and z, by the couples of tractions of 1 along these.
@@ -46,7 +45,6 @@ class Pressed {
  private:
   detail::PointSystem system_{most, float(1 - 2 * nu), true};
   AlignedList<float> q_;
-  float pressed_ = 0;
   detail::TractionDepth depth_{nu};
 };
 
@@ -65,23 +63,25 @@ auto cylinder(double half) {
 }  // namespace
 
 TEST_CASE("tractions act beneath a ball's and a cylinder's points by 3/5 of the energy's third degree") {
-  // 60 cells across: Hertz's pressure is summed within 0.3 %; 0.282 and 8 are rounded by 0.5 %.
+  // 0.282 is rounded to a thousandth of it. Measured on 60 cells across: 2e-4.
   const Pressed round(60, 60, a / 30, ball);
-  CHECK_RELATIVE(round.along_x(), 0.6 * 0.0782 * a * a / R, 0.01);
-  CHECK_RELATIVE(round.along_z(), round.along_x(), 1e-4);  // rounding
+  CHECK_RELATIVE(round.along_x(), 0.6 * 0.0782 * a * a / R, 1e-3);
+  CHECK_RELATIVE(round.along_z(), round.along_x(), 1e-6);  // the same loads, float
   // s is finite: under a cylinder of length L = 60 a, S/s = 0.25 a^2 * 8 pi/A with A = 9/8 load/p = 2.08 a L.
+  // Measured on 16 cells across: 0.6 %.
   const Pressed lies(16, 480, a / 8, cylinder(30 * a));
-  CHECK_RELATIVE(lies.along_x(), 0.6 / 8 * a * a / R / std::sqrt(1 + 0.25 * 8 * pi / (2.08 * 60)), 0.02);
+  CHECK_RELATIVE(lies.along_x(), 0.6 / 8 * a * a / R / std::sqrt(1 + 0.25 * 8 * pi / (2.08 * 60)), 0.01);
 }
 
 TEST_CASE("contacts far apart have no more than twice what each has") {
   const double apart = 30 * a;
   const Pressed one(12, 12, a / 6, ball),
       two(192, 12, a / 6, [apart](double x, double z) { return ball(std::abs(x) - apart / 2, z); });
-  // S = a^2/5 of each, (15 a)^2 along x of both; s = a^2/8 of one and a^2/4 of both. Lattice sums within 1 %.
+  // S = a^2/5 of each, (15 a)^2 along x of both; s = a^2/8 of one and a^2/4 of both.
+  // Measured, on twelve cells across that sum up alike in both: 1e-4.
   const double S = 0.2, s = 0.125, each = S / (1 + S / s);
-  CHECK_RELATIVE(two.along_x(), one.along_x() * std::sqrt(2 * s / (1 + 2 * s / (15 * 15)) / each), 0.01);
-  CHECK_RELATIVE(two.along_z(), one.along_z() * std::sqrt(S / (1 + S / (2 * s)) / each), 0.01);
+  CHECK_RELATIVE(two.along_x(), one.along_x() * std::sqrt(2 * s / (1 + 2 * s / (15 * 15)) / each), 1e-3);
+  CHECK_RELATIVE(two.along_z(), one.along_z() * std::sqrt(S / (1 + S / (2 * s)) / each), 1e-3);
 }
 
 TEST_CASE("what tractions are moved by a turn is what their couple does work on") {
@@ -89,9 +89,9 @@ TEST_CASE("what tractions are moved by a turn is what their couple does work on"
   const V t(2, 0.5f, -1), axis = V(0.3f, 0.4f, 1).normalized();
   constexpr float angle = 1e-3f;
   const Mat3<float> turn = Eigen::AngleAxisf(angle, axis).toRotationMatrix();
-  // Of second order in the angle they differ; rounding is 1e-7 of 1 over it.
-  CHECK_RELATIVE(t.dot(lies.depth().moved(turn)), angle * axis.dot(lies.depth().couple(t)), 2e-3);
-  CHECK(lies.depth().couple(V::UnitY()).isZero(1e-9f));
+  // They differ by half the angle; rounding of the turn is 1e-7 of 1 over it. Measured: 1.3e-4.
+  CHECK_RELATIVE(t.dot(lies.depth().moved(turn)), angle * axis.dot(lies.depth().couple(t)), 1e-3);
+  CHECK(lies.depth().couple(V::UnitY()).norm() <= 1e-6 * lies.along_x());  // float, here and below
   const Mat3<float> twist = Eigen::AngleAxisf(0.3f, V::UnitY()).toRotationMatrix();
   CHECK(lies.depth().moved(twist).norm() <= 1e-6 * lies.along_x());
 }

@@ -91,8 +91,7 @@ class FiniteStrain {
         wider_by_(static_cast<float>(0.18 * (1 - 7 * (1 - 2 * (std::max)(nu, 0.3))))),
         across_(static_cast<float>(SecondOrder{}.at(nu).drag * (2 - nu) / 8)),
         compliance_across_(static_cast<float>(std::numbers::pi * (2 - nu) / 2)),
-        root_of_strain_(
-            static_cast<float>(std::numbers::pi / 2 * (4. / 3) * 2 * std::numbers::pi * (1 - nu))) {}
+        root_of_strain_(root_of_strain_per_load(nu)) {}
 
   void forget() noexcept {
     drawn_ = raised_ = wider_ = deepest_share_ = rise_ = per_deepest_ = 0, factor_ = 1;
@@ -188,7 +187,7 @@ class FiniteStrain {
   static constexpr float max_root = 1.5f;  // of X: a ball pressed in by twice its radius
   float softening_, drawn_in_, wider_by_;  // k; X/sqrt(e); s/e
   float across_, compliance_across_;       // kappa (1 + beta^2)/beta; c a
-  float root_of_strain_;                   // p/E' = 2 pi (1 - nu) q/A
+  float root_of_strain_;                   // sqrt(e) over q/A
   float drawn_ = 0, raised_ = 0, per_pressure_ = 0, factor_ = 1;      // per_pressure_: 2/p_0, of q/A
   float wider_ = 0, deepest_share_ = 0, rise_ = 0, per_deepest_ = 0;  // s; d_0 of the deepest; s d_0; 1/d_0
   Mat3<float> common_ = Mat3<float>::Zero();                          // G

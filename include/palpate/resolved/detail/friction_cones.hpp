@@ -75,7 +75,7 @@ class FrictionCones {
     else
       slope.measure(system, fit, origin);
     SimdVec3<V> slopes{};
-    V all{}, pressed{};
+    V all{};
     const float mu = (std::min)(lists.mu, 1.f);
     const V lift_per_h2(passes * mu * mu / 2);
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
@@ -85,11 +85,11 @@ class FrictionCones {
       const V most = V(rim_slope) * inverse_sqrt((max)(dot(steep, steep), V(tiny)));
       const SimdVec3<V> h = (min)(most, V(1.f)) * steep;
       axes_.store(i, h);
-      slopes += q * h, all += q, pressed += q * q / V(system.areas() + i);
+      slopes += q * h, all += q;
       limit_per_mu(cosine, V(passes) * q / V(system.areas() + i), lift_per_h2).copy_to(&lists.per_mu[i]);
     }
     twist.measure(system, loads, fit, axes_, lists.anchor);
-    traction_depth_.measure(fit, reduce(pressed));
+    traction_depth_.measure(fit);
     const Vec3<float> mean = sum_of(slopes) / (std::max)(reduce(all), tiny);
     const auto turned = slope.over(origin, lean_ * mean + g);
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {

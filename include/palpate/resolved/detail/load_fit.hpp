@@ -19,6 +19,12 @@ namespace palpate::detail {
   return 9 * load / 8 * (load / pressed);  // the square of a first touch's load would vanish
 }
 
+/// sqrt(e) over the mean of q/A by load [m^2], e = d_H/R = (pi/2 p_0/E')^2, p_0 = 4/3 of the mean pressure:
+/// p/E' = 2 pi (1 - nu) q/A.
+[[nodiscard]] inline float root_of_strain_per_load(double nu) noexcept {
+  return static_cast<float>(std::numbers::pi / 2 * (4. / 3) * 2 * std::numbers::pi * (1 - nu));
+}
+
 /// Moments of the loads q over the feet x of a contact, across its mean direction m:
 ///
 ///     mean = sum q x / sum q,   spread = (sum q r r^T + own sum q A / 12 I) / sum q,   r = x - mean
@@ -43,20 +49,20 @@ class LoadFit {
     const Vec3<float> pressing = sum_of(ms) / load_;
     mean_ = sum_of(xs) / load_, m_ = pressing.normalized(), one_sided_ = pressing.norm();
     const V per_load(1 / load_);
-    V areas{}, shares2{};
+    V areas{}, shares2{}, pressed{};
     SimdVec3<V> squares{}, products{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
       const SimdVec3<V> r = from_mean(i);
-      const V share = per_load * V(q + i);
+      const V qi(q + i), A(system.areas() + i), share = per_load * qi;
       const SimdVec3<V> sr = share * r;
       squares += SimdVec3<V>{sr.x * r.x, sr.y * r.y, sr.z * r.z};
       products += SimdVec3<V>{sr.y * r.z, sr.z * r.x, sr.x * r.y};
-      areas += share * V(system.areas() + i), shares2 += share * share;
+      areas += share * A, shares2 += share * share, pressed += qi * (qi / A);
     }
     const Vec3<float> xx = sum_of(squares), xy = sum_of(products);
     Mat3<float> spread;
     spread << xx.x(), xy.z(), xy.y(), xy.z(), xx.y(), xy.x(), xy.y(), xy.x(), xx.z();
-    alike_ = 1 / reduce(shares2), area_ = reduce(areas), spread_ = spread;
+    alike_ = 1 / reduce(shares2), area_ = reduce(areas), pressed_ = reduce(pressed), spread_ = spread;
     const float few = (std::min)(4 / alike_, 1.f);
     spread += few * few * area_ / 12 * Mat3<float>::Identity();
     const float size = spread.trace();  // powers of small numbers would be 0
@@ -64,6 +70,7 @@ class LoadFit {
   }
   [[nodiscard]] bool has_load() const noexcept { return load_ > 0; }
   [[nodiscard]] float load() const noexcept { return load_; }
+  [[nodiscard]] float pressed() const noexcept { return pressed_; }  ///< sum q^2/A
   [[nodiscard]] const Vec3<float>& mean() const noexcept { return mean_; }
   [[nodiscard]] const Vec3<float>& direction() const noexcept { return m_; }  ///< m
   /// 1 where all points press the same way, 0 where they do from two sides, and m is nothing.
@@ -120,7 +127,7 @@ class LoadFit {
  private:
   const PointSystem& system_;
   const float* q_;
-  float load_ = 0, one_sided_ = 0, alike_ = 0, area_ = 0;
+  float load_ = 0, pressed_ = 0, one_sided_ = 0, alike_ = 0, area_ = 0;
   Vec3<float> mean_ = Vec3<float>::Zero(), m_ = Vec3<float>::Zero();
   Mat3<float> spread_ = Mat3<float>::Zero(), per_spread_ = Mat3<float>::Zero();
 };

@@ -38,17 +38,16 @@ namespace palpate::detail {
 /// would give energy. Where a tool slides it has none: the caller's share is how firmly friction holds.
 class TractionDepth {
  public:
-  explicit TractionDepth(double nu)
-      : root_of_strain_(static_cast<float>(4. / 3 * std::numbers::pi * std::numbers::pi * (1 - nu))) {}
+  explicit TractionDepth(double nu) : root_of_strain_(root_of_strain_per_load(nu)) {}
 
   void forget() noexcept { l_.setZero(), m_.setZero(); }
-  /// `pressed`: sum q^2/A of the loads that `fit` is of.
-  void measure(const LoadFit& fit, float pressed) noexcept {
+  /// Of the loads of `fit`.
+  void measure(const LoadFit& fit) noexcept {
     forget();
-    if (!fit.has_load() || !(pressed > 0)) return;
+    if (!(fit.pressed() > 0)) return;
     m_ = fit.direction();
-    const float s = carrying_area(fit.load(), pressed) / (8 * std::numbers::pi_v<float>),
-                root = (std::min)(root_of_strain_ * pressed / fit.load(), 1.f);
+    const float s = carrying_area(fit.load(), fit.pressed()) / (8 * std::numbers::pi_v<float>),
+                root = (std::min)(root_of_strain_ * fit.pressed() / fit.load(), 1.f);
     const Mat3<float> S = fit.spread() / s, of_one = (Mat3<float>::Identity() + S).inverse() * S,
                       across = Mat3<float>::Identity() - m_ * m_.transpose();
     // The root of what has no part along m, by its two invariants.
@@ -64,7 +63,7 @@ class TractionDepth {
   [[nodiscard]] Vec3<float> couple(const Vec3<float>& t) const noexcept { return m_.cross(l_ * t); }
 
  private:
-  float root_of_strain_;  // sqrt(e) per q/A
+  float root_of_strain_;  // sqrt(e) over q/A
   Mat3<float> l_ = Mat3<float>::Zero();
   Vec3<float> m_ = Vec3<float>::Zero();
 };

@@ -50,11 +50,10 @@ class TwistStiffening {
     mean_ = fit.mean(), m_ = fit.direction();
     const float load = fit.load();
     const SimdVec3<V> mean = each(mean_);
-    V pressures{}, squares{}, farthest{};
+    V squares{}, farthest{};
     for (std::size_t i = 0; i < system.stride(); i += V::size()) {
-      const V qi(q + i);
       const SimdVec3<V> r = system.feet().load(i) - mean;
-      pressures += qi * (qi / V(system.areas() + i)), squares += qi * dot(r, r);
+      squares += V(q + i) * dot(r, r);
       farthest = (max)(farthest, is_point(system, i) * dot(r, r));
     }
     constexpr float inner = 1.2f, pi = std::numbers::pi_v<float>;
@@ -69,10 +68,10 @@ class TwistStiffening {
     }
     const float turn = (std::max)(reduce(turns), 0.f), spread = reduce(spreads);
     if (!(spread > 0)) return;
-    const float a2 = (std::max)(carrying_area(load, reduce(pressures)) / pi, reduce_max(farthest) / 2),
+    const float a2 = (std::max)(carrying_area(load, fit.pressed()) / pi, reduce_max(farthest) / 2),
                 a = std::sqrt(a2), tool = (std::min)(3 / (4 * pi) * (a * turn / spread), 0.3f),
                 strain = std::clamp(-reduce(drawn) / spread_of_all, 0.f, 0.1f),
-                dense = (std::min)(4 * pi / 3 * system.b() * reduce(pressures) / load, 0.2f),
+                dense = (std::min)(4 * pi / 3 * system.b() * fit.pressed() / load, 0.2f),
                 kappa = (std::min)((1 + tool) * (1 + 3 * strain) * (1 + dense) - 1, 0.4f);
     per_moment_ = 3 * pi / (4 * a * a2) * kappa / (1 + kappa);
   }
